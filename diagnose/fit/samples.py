@@ -14,8 +14,8 @@ import numpy as np
 from diagnose.forward import Signals
 from diagnose.noise.model import NoiseModel, Whitening
 from diagnose.signals.recording import Recording, Run
-from diagnose.statistics.cells import CosineTransform, FilterBank, TimeSegment, octave_edges, segments
-from diagnose.statistics.hypotheses import Hypotheses, with_pools
+from diagnose.statistics.cells import CosineTransform, FilterBank, TimeSegment, octave_edges_Hz, time_segments
+from diagnose.statistics.hypotheses import Hypotheses, membership_with_pools
 from foundation.arrays import Bools, Floats, Ints
 
 POOLS: tuple[frozenset[str], ...] = tuple(
@@ -59,7 +59,7 @@ class Samples:
         self.channels = tuple(dict.fromkeys(name for run in recording.runs for name in run.answers))
         self.blocks = tuple(_blocks(recording, noise))
         labels, steps = _labels(recording, self.blocks, self.channels)
-        self.bank = FilterBank(segments(labels, steps), _edges(labels, steps))
+        self.bank = FilterBank(time_segments(labels, steps), _edges(labels, steps))
         pairs = np.column_stack([labels["run"], labels["press"]])
         unique, number = np.unique(pairs, axis=0, return_inverse=True)
         self.presses = tuple((int(run), int(press)) for run, press in unique)
@@ -161,7 +161,7 @@ class Samples:
             used[keys[-1]] = noise_degrees(model)
         number = {key: n for n, key in enumerate(used)}
         return Hypotheses(
-            with_pools(self.bank.cells, POOLS),
+            membership_with_pools(self.bank.cells, POOLS),
             self.bank.degrees,
             np.array([number[key] for key in keys]),
             np.array(list(used.values())),
@@ -242,5 +242,5 @@ def _labels(
 
 def _edges(labels: Mapping[str, Ints], steps: Floats) -> Floats:
     """Octaves from one turn in the longest piece up."""
-    longest = max((p.samples.stop - p.samples.start) * p.step_s for p in segments(labels, steps))
-    return octave_edges(longest, float(steps.min()))
+    longest = max((p.samples.stop - p.samples.start) * p.step_s for p in time_segments(labels, steps))
+    return octave_edges_Hz(longest, float(steps.min()))

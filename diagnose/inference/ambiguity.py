@@ -6,7 +6,7 @@ import numpy as np
 
 from diagnose.fit.refit import Fitted
 from diagnose.fit.samples import Samples
-from diagnose.statistics.error_rates import ALIKE, RATES
+from diagnose.statistics.error_rates import AMBIGUITY_ERROR, RATES
 from diagnose.statistics.separation import ambiguity_groups, least_separation
 from foundation.arrays import Floats
 
@@ -22,13 +22,13 @@ def separations(samples: Samples, fits: Sequence[Fitted]) -> Floats:
 
 def grouped(separation: Floats) -> tuple[tuple[int, ...], ...]:
     """Groups of models closer than the least separation, that of the first model first."""
-    groups = ambiguity_groups(separation, least_separation(ALIKE), RATES.largest_group).groups
+    groups = ambiguity_groups(separation, least_separation(AMBIGUITY_ERROR), RATES.largest_group).groups
     return tuple(sorted(groups, key=lambda group: min(group)))
 
 
 def alike(separation: Floats) -> int:
     """How many models cannot be told from the first, itself included."""
-    return int((separation[0] < least_separation(ALIKE)).sum())
+    return int((separation[0] < least_separation(AMBIGUITY_ERROR)).sum())
 
 
 def _distance(samples: Samples, true: Fitted, rival: Fitted) -> float:

@@ -19,7 +19,7 @@ from diagnose.inference.residual_test import DRAWS, checked, nuisance_pull
 from diagnose.inference.screening import Screening
 from diagnose.inference.search import first_fits, paired, pairs, singles
 from diagnose.statistics.abstain import Decision, Evidence, decide
-from diagnose.statistics.error_rates import ALIKE, FIRSTS, LEFT, RATES
+from diagnose.statistics.error_rates import AMBIGUITY_ERROR, LARGEST_SHARE_LEFT, MOST_FIRSTS_OF_PAIRS, RATES
 from diagnose.statistics.held_out import Gain, gain_over_noise
 from diagnose.statistics.model_criteria import bic, held_out_probabilities
 from foundation.arrays import Bools, Floats
@@ -73,12 +73,12 @@ class Judge:
         forecast = forecasted(samples, fit.system, fit)
         left = share_left(fit, self.found.excess)
         system, p_left = replace(fit.system, form_error=fit.largest_form_error), 1.0
-        if left > LEFT or self.found.excess == 0.0:
+        if left > LARGEST_SHARE_LEFT or self.found.excess == 0.0:
             found = checked(samples, system, self.rng, fit.slopes, draws)
             p_left, strain = found.p_value, found.strain
         else:
             strain = nuisance_pull(system, fit.slopes)
-        p_strained = strain.p_value if strain.excess > LEFT * self.strain.excess else 1.0
+        p_strained = strain.p_value if strain.excess > LARGEST_SHARE_LEFT * self.strain.excess else 1.0
         return Judged(fit, forecast, self.gained(forecast, self.base), left, p_left, p_strained)
 
     def gained(self, one: Forecasted, rival: Forecasted) -> Gain:
@@ -130,7 +130,7 @@ def _with_pairs(judge: Judge, singles: Sequence[Judged], best: Judged, report: R
     other.
     """
     models, tried, single = list(singles), list[Candidate](), best
-    for first in [best, *_others(singles, best)][:FIRSTS]:
+    for first in [best, *_others(singles, best)][:MOST_FIRSTS_OF_PAIRS]:
         same = [one.fit.candidates[0] for one in singles if one is not first and _same(judge, first, one)]
         second = [judge.judged(fit) for fit in pairs(judge.model, judge.found, first.fit, [*same, *tried], report)]
         better = [one for one in second if judge.gained(one.forecast, best.forecast).lower > 0.0]
@@ -219,7 +219,7 @@ def contradicted(models: Sequence[Judged]) -> Bools:
 
 def likely(models: Sequence[Judged], probabilities: Floats) -> list[int]:
     """Numbers of the faultless models that may be right instead of the first, by probabilities (m,) of the scores."""
-    return [n for n, one in enumerate(models) if n > 0 and probabilities[n] > ALIKE and not _doubtful(one)]
+    return [n for n, one in enumerate(models) if n > 0 and probabilities[n] > AMBIGUITY_ERROR and not _doubtful(one)]
 
 
 def criteria(models: Sequence[Judged]) -> Floats:

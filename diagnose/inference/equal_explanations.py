@@ -9,7 +9,7 @@ from diagnose.fit.signal_discrepancy import VISIBLE
 from diagnose.inference.choice import Choice, Judged
 from diagnose.inference.screening import Screening
 from diagnose.inference.tolerant_judge import TolerantJudge, judge_of_name
-from diagnose.statistics.abstain import too_many
+from diagnose.statistics.abstain import too_many_reason
 from diagnose.statistics.error_rates import RATES
 
 
@@ -25,7 +25,7 @@ def distinguished(model: ObservedModel, found: Screening, choice: Choice) -> Cho
     good = {n for n, one in enumerate(again) if not judge.excluded(one.forecast, again[0].forecast)}
     group = tuple(sorted({*choice.groups[0], 0, *good}))
     ambiguous = len(group) > RATES.largest_group
-    against = [too_many(len(group), RATES)] if ambiguous else _needless(judge, again)
+    against = [too_many_reason(len(group), RATES)] if ambiguous else _needless(judge, again)
     rest = (tuple(n for n in other if n not in group) for other in choice.groups[1:])
     decision = choice.decision
     if against:

@@ -74,7 +74,7 @@ def _left_out(
     columns, sigma = columns[:, kept], sigma[kept]
     white, informative = system.weighted(residual), np.flatnonzero(system.informative)
     folds = leave_press_out(fold[informative])
-    sums = [Sums.of(columns[held], white[held]) for _, held in folds]
+    sums = [Sums.from_columns(columns[held], white[held]) for _, held in folds]
     nothing = Sums(np.zeros((len(sigma), len(sigma))), np.zeros(len(sigma)), 0.0, 0)
     if len(folds) < 2:
         sigma = np.minimum(sigma, FLAT / np.maximum(np.linalg.norm(columns, axis=0), 1.0))

@@ -90,6 +90,6 @@ def _log_scores(model: ObservedModel, values: Floats, settings: Sequence[Setting
     scale = np.log(system.weight)
     rows = [samples.press == number for number in range(len(samples.presses))]
     return np.array([
-        Sums.of(columns[own][:, kept], white[own]).log_evidence(system.sigma[kept]) + float(scale[own].sum())
+        Sums.from_columns(columns[own][:, kept], white[own]).log_evidence(system.sigma[kept]) + float(scale[own].sum())
         for own in rows
     ])  # fmt: skip

@@ -8,7 +8,7 @@ from scipy.stats import norm
 from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.samples import Samples
-from diagnose.statistics.family_wise import null_energies, step_down
+from diagnose.statistics.family_wise import null_energies, step_down_p_values
 from diagnose.statistics.nuisance_projection import Marginal
 from foundation.arrays import Floats
 
@@ -58,7 +58,7 @@ def checked(
     null = family.scores(null_energies(family, cell, free, draws, rng))
     energies = np.asarray(np.bincount(cell, white**2, len(samples.bank.cells)), dtype=np.float64)
     scores = family.scores(energies)
-    return Checked(scores, step_down(scores, null), energies, nuisance_pull(system, fitted), draws)
+    return Checked(scores, step_down_p_values(scores, null), energies, nuisance_pull(system, fitted), draws)
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from diagnose.inference.excess import excess
 from diagnose.inference.sensitivities import Sensitivity, sensitivity
 from diagnose.statistics.error_rates import RATES
 from diagnose.statistics.nuisance_projection import Marginal
-from diagnose.statistics.score_test import holm, score_test
+from diagnose.statistics.score_test import holm_p_values, score_test
 from foundation.arrays import Bools, Floats
 from foundation.progress import Report
 
@@ -51,7 +51,7 @@ def screened(system: LinearisedSystem, sensitivities: Sequence[Sensitivity], noi
         scaled = [one.places[n] * min(1.0, float(finite[n].estimate[0])) for n in order]
         guesses = [tangent.estimate * one.sign, *scaled]
         estimates.append(tuple(_clipped(one, guess) for guess in guesses if np.any(guess)))
-    return Screened(holm(np.array(p_values)), np.array(explained), tuple(estimates))
+    return Screened(holm_p_values(np.array(p_values)), np.array(explained), tuple(estimates))
 
 
 def _clipped(one: Sensitivity, guess: Floats) -> Floats:

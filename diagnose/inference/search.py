@@ -12,7 +12,7 @@ from diagnose.fit.refit import Fitted, common_metric, fitted
 from diagnose.forward import Candidate
 from diagnose.inference.screening import Screening, least_degrees, screened
 from diagnose.inference.sensitivities import sensitivity
-from diagnose.statistics.error_rates import FINALISTS, PAIRS, RATES
+from diagnose.statistics.error_rates import MOST_FINALISTS, MOST_PAIRS_PER_FIRST, RATES
 from foundation.arrays import Floats
 from foundation.progress import Report
 
@@ -39,7 +39,7 @@ def first_fits(model: ObservedModel, found: Screening, report: Report) -> list[F
         best = lowest(descent(model, common, only, ()), found.tests.estimates[number][:STARTS], found.rough)
         if best is not None:
             firsts.append(FirstFit(number, best.values, best.cost))
-    return sorted(firsts, key=lambda one: one.cost)[:FINALISTS]
+    return sorted(firsts, key=lambda one: one.cost)[:MOST_FINALISTS]
 
 
 def singles(model: ObservedModel, found: Screening, firsts: Sequence[FirstFit], report: Report) -> list[Fitted]:
@@ -92,7 +92,7 @@ def pairs(
     )
     tests = screened(beside, each, least_degrees(model))
     shows = (tests.p_values <= level) & (tests.explained >= least)
-    shown = [int(n) for n in np.argsort(-tests.explained) if shows[n]][:PAIRS]
+    shown = [int(n) for n in np.argsort(-tests.explained) if shows[n]][:MOST_PAIRS_PER_FIRST]
     fits = []
     for count, number in enumerate(shown):
         report("pairs", count, len(shown))

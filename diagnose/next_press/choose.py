@@ -12,7 +12,7 @@ from diagnose.next_press.parting import PressJudge
 from diagnose.next_press.proposals import PressSetup, Proposal, base_setup, repeats
 from diagnose.next_press.variations import variations
 from diagnose.signals.recording import Recording, Run
-from diagnose.statistics.best_press import best_press, linked
+from diagnose.statistics.best_press import best_press, linked_groups
 from diagnose.statistics.separation import Group, least_separation
 from foundation.arrays import Floats
 
@@ -61,7 +61,7 @@ def next_presses(recording: Recording, engine: Engine, findings: Findings) -> tu
         before, known = known, np.hypot(known, separations)
         settled = separations[(before < SETTLED) & (known >= SETTLED)]
         sigma = float(settled.min() if len(settled) else separations.max())
-        alike = linked(len(rivals), known < SETTLED)
+        alike = linked_groups(len(rivals), known < SETTLED)
         found.append(NextPress(press.text, press.changes, rivals, separations, sigma, alike, press.run))
     return tuple(found)
 

@@ -22,7 +22,7 @@ from diagnose.next_press.proposals import Proposal
 from diagnose.noise.estimate import noise_models
 from diagnose.noise.model import NoiseModel, white_noise
 from diagnose.signals.recording import Recording
-from diagnose.statistics.best_press import remaining_spread
+from diagnose.statistics.best_press import covariance_root
 from foundation.arrays import Floats
 
 
@@ -114,7 +114,7 @@ class PressJudge:
         widths = [c.high - c.low for setting in settings for c in setting.candidate.coordinates]
         slopes = answer.system.weighted(answer.slopes)
         told = answer.system.quadratic.product(slopes, slopes)
-        return remaining_spread(told + np.diag(np.square(1.0 / np.array(widths))))
+        return covariance_root(told + np.diag(np.square(1.0 / np.array(widths))))
 
     def _separation(self, one: ImaginedAnswer, other: ImaginedAnswer, *spreads: Floats) -> float:
         """The expected separation of statistics/separation.py, by inner products: presses may have many samples."""

@@ -8,12 +8,15 @@ from diagnose.statistics.error_rates import Rates
 
 @dataclass(frozen=True)
 class Evidence:
-    """p_mismatch, p_left : family-wise p-values of the whitened residual before and after the best named model.
+    """What the decision is made from.
 
-    p_strained : of the parameter that lies farthest from its prior beside that model. gain_lower : lower bound of its
-    held-out gain, corrected for all candidates. black_box_lower : the same of the black box over the named model; both
-    in nats per press, at the level of Rates. implausible : parameters on a bound that no real part has. group : models
-    that cannot be told from the named one, itself included. ordinary : a careful laboratory's rig has as much of it.
+    p_mismatch, p_left : family-wise p-values of the residual before and after a name.
+
+    p_strained : p-value of the parameter that lies farthest from its prior beside the best named model. gain_lower :
+    lower bound of its held-out gain, corrected for all candidates. black_box_lower : the same of the black box over the
+    named model; both in nats per press, at the level of Rates. implausible : parameters on a bound that no real part
+    has. group : number of models that cannot be told from the named one, itself included. ordinary : whether a careful
+    laboratory's rig has as much of it.
     """
 
     p_mismatch: float
@@ -28,9 +31,10 @@ class Evidence:
 
 @dataclass(frozen=True)
 class Decision:
-    """named : the best model is named. unexplained : a mismatch that no known mechanism explains.
+    """What is said of a mismatch. named : the best model is named. unexplained : no known mechanism explains it.
 
-    ambiguous : nothing speaks against a name but that too many models share it.
+    reasons : sentences against a name. ambiguous : nothing speaks against a name but the number of models that share
+    it.
     """
 
     mismatch: bool
@@ -41,16 +45,17 @@ class Decision:
 
 
 def decide(evidence: Evidence, rates: Rates) -> Decision:
-    """Name only a model with no reason against it; reasons are whole sentences."""
+    """Decide whether the best model is named: only if no reason, a whole sentence each, speaks against it."""
     if evidence.p_mismatch > rates.level:
         reason = f"The residual is no larger than noise makes it ({p_equals(evidence.p_mismatch)})."
         return Decision(False, False, False, (reason,))
-    reasons = tuple(_against(evidence, rates))
+    reasons = tuple(_reasons_against(evidence, rates))
     ambiguous = len(reasons) == 1 and evidence.group > rates.largest_group
     return Decision(True, not reasons, bool(reasons), reasons, ambiguous)
 
 
-def _against(evidence: Evidence, rates: Rates) -> list[str]:
+def _reasons_against(evidence: Evidence, rates: Rates) -> list[str]:
+    """Sentences against naming the best model, from all evidence but the mismatch itself."""
     found = []
     if evidence.gain_lower <= 0.0:
         found.append(
@@ -75,12 +80,12 @@ def _against(evidence: Evidence, rates: Rates) -> list[str]:
             f"{figure(evidence.black_box_lower)} nats per press."
         )
     if evidence.group > rates.largest_group:
-        found.append(too_many(evidence.group, rates))
+        found.append(too_many_reason(evidence.group, rates))
     return found
 
 
-def too_many(group: int, rates: Rates) -> str:
-    """The reason against a name that so many models share."""
+def too_many_reason(group: int, rates: Rates) -> str:
+    """Sentence against a name where a group of this many models cannot be told apart."""
     return (
         f"{group} explanations cannot be told apart; at most {rates.largest_group} may remain for a name to be given."
     )

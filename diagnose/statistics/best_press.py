@@ -12,25 +12,28 @@ from diagnose.statistics.separation import Group
 from foundation.arrays import Bools, Floats
 
 
-def remaining_spread(information: Floats) -> Floats:
-    """A root (p, p) of the covariance that earlier presses, with priors, leave to p parameters: R R' = information^-1.
+def covariance_root(information: Floats) -> Floats:
+    """Root R (p, p) of the covariance of p parameters with an information matrix (p, p): R R' = information^-1.
 
-    LinAlgError where they leave one undetermined.
+    LinAlgError where a parameter is undetermined.
     """
     return np.linalg.inv(np.linalg.cholesky(information)).T
 
 
 def best_press(separation: Floats, settled: float) -> int:
-    """The press that parts most pairs of rivals by settled; of equals the one whose least separated pair is farthest.
+    """Number of the press that parts most pairs of rivals by at least `settled` sigma.
 
-    separation : (presses, pairs) in sigma.
+    separation : (presses, pairs) in sigma. Of equals it is the press whose least separated pair is farthest.
     """
     parted = (separation >= settled).sum(axis=1)
     return int(max(range(len(separation)), key=lambda n: (parted[n], separation[n].min(), separation[n].mean())))
 
 
-def linked(count: int, together: Bools) -> tuple[Group, ...]:
-    """Groups of two and more that pairs (count (count - 1) / 2,), in the order of combinations, link to each other."""
+def linked_groups(count: int, together: Bools) -> tuple[Group, ...]:
+    """Groups of two and more of `count` items that are linked by pairs.
+
+    together : (count (count - 1) / 2,) flags of linked pairs, in the order of itertools.combinations.
+    """
     of_pairs = np.zeros((count, count), dtype=bool)
     of_pairs[np.triu_indices(count, 1)] = together
     number, labels = connected_components(of_pairs, directed=False)

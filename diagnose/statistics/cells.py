@@ -27,14 +27,14 @@ class TimeSegment:
 
 @dataclass(frozen=True)
 class Cell:
-    """One segment in one band [low, high) Hz."""
+    """One time segment in one band [low, high) Hz."""
 
     labels: Mapping[str, int]
     band_Hz: tuple[float, float]
 
 
-def segments(labels: Mapping[str, Ints], step_s: Floats) -> tuple[TimeSegment, ...]:
-    """Cut n samples wherever one of the labels (n,) or the sampling step (n,) changes.
+def time_segments(labels: Mapping[str, Ints], step_s: Floats) -> tuple[TimeSegment, ...]:
+    """Time segments of n samples, cut wherever one of the labels (n,) or the sampling step (n,) changes.
 
     Steps must be the nominal ones of each even stretch: their jitter would cut everywhere.
     """
@@ -47,7 +47,7 @@ def segments(labels: Mapping[str, Ints], step_s: Floats) -> tuple[TimeSegment, .
     )
 
 
-def octave_edges(duration_s: float, step_s: float) -> Floats:
+def octave_edges_Hz(duration_s: float, step_s: float) -> Floats:
     """Edges (k,) of octaves in Hz from below one turn in the duration up to half the sampling rate; the first is 0."""
     nyquist = 0.5 / step_s
     octaves = max(1, int(np.ceil(np.log2(nyquist * duration_s))))
@@ -55,9 +55,9 @@ def octave_edges(duration_s: float, step_s: float) -> Floats:
 
 
 class CosineTransform:
-    """Orthonormal coefficients (DCT-II) of pieces in a row, each by itself.
+    """Orthonormal cosine transform (DCT-II) of successive time segments, each by itself.
 
-    Pieces of one length are transformed together, since a call takes longer than the transform of a short piece.
+    Segments of one length are transformed together, since a call takes longer than the transform of a short one.
     """
 
     def __init__(self, pieces: Sequence[TimeSegment]) -> None:
@@ -74,9 +74,10 @@ class CosineTransform:
 
 
 class FilterBank:
-    """The transform from n samples to n coefficients and their sorting into cells.
+    """Cosine transform from n samples to n coefficients, and their sorting into c cells.
 
-    cells : in order. cell : (n,) the cell of each coefficient. degrees : (c,) coefficients in each cell.
+    cells : in order. cell : (n,) number of the cell of each coefficient. degrees : (c,) number of coefficients in each
+    cell.
     """
 
     def __init__(self, pieces: Sequence[TimeSegment], edges_Hz: Floats) -> None:
@@ -86,7 +87,7 @@ class FilterBank:
         cells: list[Cell] = []
         numbers: list[Ints] = []
         for piece in self.pieces:
-            band = _bands(piece, edges_Hz)
+            band = _band_numbers(piece, edges_Hz)
             present, own = np.unique(band, return_inverse=True)
             numbers.append(own + len(cells))
             cells += [Cell(piece.labels, (float(edges_Hz[b]), float(edges_Hz[b + 1]))) for b in present]
@@ -99,12 +100,12 @@ class FilterBank:
         return self._transform(values)
 
     def energies(self, values: Floats) -> Floats:
-        """Sum of squares (c,) in each cell of samples (n,)."""
+        """Sums of squares (c,) over the coefficients of each cell, of samples (n,)."""
         return np.asarray(np.bincount(self.cell, self.coefficients(values) ** 2, len(self.cells)), dtype=np.float64)
 
 
-def _bands(piece: TimeSegment, edges_Hz: Floats) -> Ints:
-    """The band of each coefficient of a segment: coefficient k of n has frequency k / (2 n step)."""
+def _band_numbers(piece: TimeSegment, edges_Hz: Floats) -> Ints:
+    """Number of the band of each coefficient of a time segment: coefficient k of n has frequency k / (2 n step)."""
     count = piece.samples.stop - piece.samples.start
     frequency = np.arange(count) / (2.0 * count * piece.step_s)
     found = np.searchsorted(edges_Hz, frequency, side="right") - 1

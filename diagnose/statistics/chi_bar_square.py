@@ -1,4 +1,4 @@
-"""The chi-bar-square distribution: of the score statistic over a cone of allowed signs.
+"""The chi-bar-square distribution: that of the score statistic over a cone of allowed signs.
 
 Kudo, Biometrika 50 (1963) 403; Shapiro, Int. Stat. Rev. 56 (1988) 49; Silvapulle and Sen, Constrained Statistical
 Inference, 2005, section 3.4. The weight of j degrees of freedom is the chance that just j parameters come out positive:
@@ -14,44 +14,46 @@ from scipy.stats import f as f_distribution
 
 from foundation.arrays import Floats
 
-MOST = 8  # non-negative parameters: 256 faces
-CLOSED = 3  # dimensions of the orthants that have a closed form
+MOST_NON_NEGATIVE = 8  # non-negative parameters: 256 faces
+LARGEST_CLOSED_FORM = 3  # dimensions of the orthants that have a closed form
 ORTHANT_ERROR = 1e-3  # of the others, relative: no level is better known
-ROUGH, LEAST = 1e-3, 1e-5  # absolute, of a first estimate and of what is next to nothing
+ROUGH_ERROR, LEAST_ERROR = 1e-3, 1e-5  # absolute, of a first estimate and of what is next to nothing
 
 
-def weights(information: Floats) -> Floats:
+def chi_bar_weights(information: Floats) -> Floats:
     """Weights (q + 1,) of 0 to q degrees of freedom for an information matrix (q, q) of non-negative parameters.
 
-    ValueError for more than MOST parameters.
+    ValueError for more than MOST_NON_NEGATIVE parameters.
     """
     count = len(information)
-    if count > MOST:
-        raise ValueError(f"{count} non-negative parameters in one candidate; at most {MOST}")
+    if count > MOST_NON_NEGATIVE:
+        raise ValueError(f"{count} non-negative parameters in one candidate; at most {MOST_NON_NEGATIVE}")
     found = np.zeros(count + 1)
-    left_out = _from_the_others(count)
+    left_out = _degrees_by_difference(count)
     for positive in set(range(count + 1)) - set(left_out):
         for face in combinations(range(count), positive):
-            found[positive] += _chance_of_face(information, list(face))
+            found[positive] += _face_probability(information, list(face))
     for positive in left_out:
         found[positive] = max(0.5 - found[positive % 2 :: 2].sum(), 0.0)
     return np.asarray(found / found.sum())  # the sum is one but for the numerical orthants
 
 
-def _from_the_others(count: int) -> list[int]:
-    """One even and one odd number of degrees, those with the most faces of numerical orthants; none without any.
+def _degrees_by_difference(count: int) -> list[int]:
+    """Degrees of freedom whose weights follow from the others: one even and one odd, with the most numerical orthants.
 
-    Even weights make one half together, and so do odd ones (Silvapulle and Sen, proposition 3.6.1).
+    Even weights make one half together, and so do odd ones (Silvapulle and Sen, proposition 3.6.1). None where all
+    orthants have a closed form.
     """
-    numerical = {j: comb(count, j) for j in range(count + 1) if max(j, count - j) > CLOSED}
+    numerical = {j: comb(count, j) for j in range(count + 1) if max(j, count - j) > LARGEST_CLOSED_FORM}
     of_each = [[j for j in numerical if j % 2 == odd] for odd in (0, 1)]
     return [max(some, key=numerical.__getitem__) for some in of_each if some]
 
 
-def survival(statistic: float, weight: Floats, unbounded: int = 0, noise_degrees: float = np.inf) -> float:
-    """P(chi-bar-square >= statistic). unbounded : parameters of either sign, which always add a degree of freedom.
+def chi_bar_survival(statistic: float, weight: Floats, unbounded: int = 0, noise_degrees: float = np.inf) -> float:
+    """P(chi-bar-square >= statistic) for weights (q + 1,).
 
-    noise_degrees : of the estimated noise variance, inf when it is known; each term is then d F(d, noise_degrees).
+    unbounded : number of parameters of either sign, which always add a degree of freedom. noise_degrees : degrees of
+    freedom of the estimated noise variance, inf when it is known; each term is then d F(d, noise_degrees).
     """
     if statistic <= 0.0:
         return 1.0
@@ -59,32 +61,35 @@ def survival(statistic: float, weight: Floats, unbounded: int = 0, noise_degrees
     return float(sum(w * f_tail(statistic, degrees, noise_degrees) for w, degrees in terms if degrees > 0))
 
 
-def orthant(covariance: Floats) -> float:
+def orthant_probability(covariance: Floats) -> float:
     """P(all components of N(0, covariance) are positive); closed forms up to three (Sheppard 1898, David 1953)."""
     count = len(covariance)
     if count == 0:
         return 1.0
     deviation = np.sqrt(np.diag(covariance))
     correlation = np.clip(covariance / np.outer(deviation, deviation), -1.0, 1.0)
-    if count <= CLOSED:
+    if count <= LARGEST_CLOSED_FORM:
         above = correlation[np.triu_indices(count, 1)]
         return float(0.5**count + 0.5 ** (count - 1) * np.arcsin(above).sum() / np.pi)
-    rough = _numerical(correlation, ROUGH)
-    return _numerical(correlation, max(ORTHANT_ERROR * rough, LEAST))
+    rough = _numerical_orthant(correlation, ROUGH_ERROR)
+    return _numerical_orthant(correlation, max(ORTHANT_ERROR * rough, LEAST_ERROR))
 
 
-def _numerical(correlation: Floats, error: float) -> float:
-    """The same by quasi-random points, of this absolute error."""
+def _numerical_orthant(correlation: Floats, error: float) -> float:
+    """P(all components of N(0, correlation) are positive) by quasi-random points, to this absolute error."""
     seed = np.random.default_rng(0)
     law = multivariate_normal(cov=correlation, allow_singular=True, seed=seed, abseps=error, releps=0.0)
     return float(law.cdf(np.zeros(len(correlation))))
 
 
-def _chance_of_face(information: Floats, face: list[int]) -> float:
+def _face_probability(information: Floats, face: list[int]) -> float:
+    """Probability that just the parameters of a face come out positive, for an information matrix (q, q)."""
     others = [n for n in range(len(information)) if n not in face]
     inner = np.asarray(np.linalg.inv(information[np.ix_(face, face)]), dtype=np.float64)
     across = information[np.ix_(others, face)]
-    return orthant(inner) * orthant(information[np.ix_(others, others)] - across @ inner @ across.T)
+    return orthant_probability(inner) * orthant_probability(
+        information[np.ix_(others, others)] - across @ inner @ across.T
+    )
 
 
 def f_tail(statistic: float, degrees: int, noise_degrees: float) -> float:

@@ -7,9 +7,10 @@ from diagnose.statistics.proportions import rate_for_promise
 
 @dataclass(frozen=True)
 class Rates:
-    """level : chance per case of each kind of false alarm (proportions.rate_for_promise gives it from a promise).
+    """Error rates and limits that decide on a name.
 
-    margin : nats per press by which the black box must win. largest_group : models that may stay indistinguishable.
+    level : chance per case of each kind of false alarm (proportions.rate_for_promise gives it from a promise). margin :
+    nats per press by which the black box must win. largest_group : number of models that may stay indistinguishable.
     """
 
     level: float
@@ -19,15 +20,15 @@ class Rates:
 
 RATES = Rates(rate_for_promise(4, 400), margin=0.0, largest_group=3)
 """At most 4 false names in 400 cases without effect, with 99 % confidence; margin: see black_box.py."""
-LEFT = 0.05
+LARGEST_SHARE_LEFT = 0.05
 """Share of the excess, or of the strain of what floats, that a named model may leave although chance does not."""
 LARGEST_FORM_SHARE = 0.1
 """Share of the excess that the model-form error may account for; an effect that nuisances cancel has none."""
-ALIKE = 0.05
+AMBIGUITY_ERROR = 0.05
 """Chance of choosing the wrong one of two models above which they are called ambiguous."""
-FINALISTS = 6
-"""Single mechanisms that are fitted with all that floats, after a first fit of all survivors."""
-FIRSTS = 3
-"""Single mechanisms beside which a second one is sought."""
-PAIRS = 4
-"""Pairs that are fitted beside each."""
+MOST_FINALISTS = 6
+"""Number of single mechanisms that are fitted with all that floats, after a first fit of all survivors."""
+MOST_FIRSTS_OF_PAIRS = 3
+"""Number of single mechanisms beside which a second one is sought."""
+MOST_PAIRS_PER_FIRST = 4
+"""Number of pairs that are fitted for each of these."""

@@ -13,13 +13,14 @@ from foundation.arrays import Floats, Ints
 
 
 def null_energies(hypotheses: Hypotheses, cell: Ints, free: Floats, draws: int, rng: np.random.Generator) -> Floats:
-    """Cell energies (draws, c) of noise alone.
+    """Draws (draws, c) of the energies of all cells under noise alone.
 
-    cell : (n,) of each coefficient. free : (n, f) coefficients of the orthonormal directions of the free nuisances.
+    cell : (n,) number of the cell of each coefficient. free : (n, f) coefficients of the orthonormal directions of the
+    free nuisances.
     """
     count = len(hypotheses.degrees)
     by_cell = free[np.argsort(cell, kind="stable")]
-    roots = [_root(rows) for rows in np.split(by_cell, np.cumsum(np.bincount(cell))[:-1])]
+    roots = [_gram_root(rows) for rows in np.split(by_cell, np.cumsum(np.bincount(cell))[:-1])]
     along = [rng.standard_normal((draws, len(root))) for root in roots]
     fitted = sum((part @ root for part, root in zip(along, roots, strict=True)), np.zeros((draws, free.shape[1])))
     energies = np.empty((draws, count))
@@ -28,10 +29,10 @@ def null_energies(hypotheses: Hypotheses, cell: Ints, free: Floats, draws: int, 
         energies[:, c] = ((part - fitted @ root.T) ** 2).sum(axis=1)
         if rest > 0.0:
             energies[:, c] += rng.chisquare(rest, draws)
-    return energies / _variances(hypotheses.noise_degrees, draws, rng)[:, hypotheses.noise]
+    return energies / _estimated_variances(hypotheses.noise_degrees, draws, rng)[:, hypotheses.noise]
 
 
-def step_down(observed: Floats, null: Floats) -> Floats:
+def step_down_p_values(observed: Floats, null: Floats) -> Floats:
     """Family-wise p-values (h,) of scores (h,) given null draws (b, h) of all of them.
 
     Step-down maxT (Westfall and Young, Resampling-Based Multiple Testing, 1993, algorithm 4.1'; Ge, Dudoit and Speed,
@@ -46,13 +47,13 @@ def step_down(observed: Floats, null: Floats) -> Floats:
     return adjusted
 
 
-def _root(rows: Floats) -> Floats:
-    """(min(d, f), f) with the same inner products as rows (d, f)."""
+def _gram_root(rows: Floats) -> Floats:
+    """Matrix (min(d, f), f) whose columns have the same inner products as those of rows (d, f)."""
     return np.asarray(qr(rows, mode="economic")[1])
 
 
-def _variances(degrees: Floats, draws: int, rng: np.random.Generator) -> Floats:
-    """Estimates (draws, g) of a unit variance with these degrees of freedom (g,)."""
+def _estimated_variances(degrees: Floats, draws: int, rng: np.random.Generator) -> Floats:
+    """Draws (draws, g) of estimates of a unit variance with these degrees of freedom (g,), inf where it is known."""
     known = np.isinf(degrees)
     estimated = np.ones((draws, len(degrees)))
     estimated[:, ~known] = rng.chisquare(degrees[~known], (draws, int((~known).sum()))) / degrees[~known]

@@ -1,4 +1,4 @@
-"""The judge: how well a model predicts a press that it was not fitted to.
+"""The judge of models: how well each predicts a press that it was not fitted to.
 
 The score of a press is the logarithm of the predictive density at its samples (Good, J. R. Stat. Soc. B 14 (1952) 107;
 Gneiting and Raftery, J. Am. Stat. Assoc. 102 (2007) 359), in nats. Gains are differences to a rival on the same press.
@@ -18,7 +18,10 @@ from foundation.arrays import Floats, Ints
 
 @dataclass(frozen=True)
 class Forecast:
-    """Every press predicted from the others. log_scores : (presses,). predictions : (n,) expected whitened residual."""
+    """Predictions of every press from the others. log_scores : (presses,).
+
+    predictions : (n,) expected whitened residual.
+    """
 
     log_scores: Floats
     predictions: Floats
@@ -26,7 +29,7 @@ class Forecast:
 
 @dataclass(frozen=True)
 class Gain:
-    """Nats per press. lower : one-sided confidence bound, corrected for the number of candidates."""
+    """A held-out gain in nats per press. lower : one-sided confidence bound, corrected for the number of candidates."""
 
     mean: float
     standard_error: float
@@ -34,13 +37,13 @@ class Gain:
 
 
 def leave_press_out(press: Ints) -> tuple[tuple[Ints, Ints], ...]:
-    """(samples to fit, samples held out) for every press; press : (n,) label of each sample."""
+    """Split samples by press: for every press (samples to fit, samples held out); press : (n,) label of each sample."""
     return tuple((np.flatnonzero(press != label), np.flatnonzero(press == label)) for label in np.unique(press))
 
 
 def sums_by_press(residual: Floats, columns: Floats, press: Ints) -> tuple[Sums, ...]:
-    """Sums of each press, in ascending order of its label."""
-    return tuple(Sums.of(columns[held], residual[held]) for _, held in leave_press_out(press))
+    """Sums of each press, in ascending order of its label, from residual (n,), columns (n, k) and labels (n,)."""
+    return tuple(Sums.from_columns(columns[held], residual[held]) for _, held in leave_press_out(press))
 
 
 def forecast(residual: Floats, columns: Floats, press: Ints, prior: Callable[[Sums], Floats]) -> Forecast:
@@ -62,7 +65,7 @@ def forecast(residual: Floats, columns: Floats, press: Ints, prior: Callable[[Su
 
 
 def gain_over_noise(gains: Floats, separations: Floats, level: float, candidates: int = 1) -> Gain:
-    """The mean of gains (presses,) on just these presses: what could the noise alone have done to it?
+    """Mean of the gains (presses,) on just these presses, with the error that noise alone makes.
 
     separations : (presses,) distance in sigma between the two predictions of each press. With predictions a and b and
     white noise the gain |r - b|^2 / 2 - |r - a|^2 / 2 has the variance |a - b|^2, known before the press. For few

@@ -15,8 +15,11 @@ from diagnose.statistics.cells import Cell
 from foundation.arrays import Floats, Ints
 
 
-def pooled(cells: Sequence[Cell], over: Collection[str]) -> csr_array:
-    """Membership (h, c), 0 or 1: sums over all cells that agree but for the labels (or "band_Hz") in `over`."""
+def pool_membership(cells: Sequence[Cell], over: Collection[str]) -> csr_array:
+    """Sparse matrix (h, c) of 0 and 1 that sums c cells to h pools: all that agree but for the labels in `over`.
+
+    The name "band_Hz" in `over` stands for the band of a cell.
+    """
     labels = [{**cell.labels, "band_Hz": cell.band_Hz} for cell in cells]
     keys = [tuple((name, value) for name, value in sorted(own.items()) if name not in over) for own in labels]
     groups = {key: number for number, key in enumerate(dict.fromkeys(keys))}
@@ -24,17 +27,19 @@ def pooled(cells: Sequence[Cell], over: Collection[str]) -> csr_array:
     return csr_array((np.ones(len(cells)), (rows, np.arange(len(cells)))))
 
 
-def with_pools(cells: Sequence[Cell], pools: Sequence[Collection[str]]) -> csr_array:
-    """Membership of every cell by itself first, in order, then of each pooling."""
-    return vstack([eye_array(len(cells), format="csr"), *(pooled(cells, over) for over in pools)], format="csr")
+def membership_with_pools(cells: Sequence[Cell], pools: Sequence[Collection[str]]) -> csr_array:
+    """Sparse matrix (h, c) of every cell by itself first, in order, then of the pools of each pooling."""
+    return vstack(
+        [eye_array(len(cells), format="csr"), *(pool_membership(cells, over) for over in pools)], format="csr"
+    )
 
 
 @dataclass(frozen=True)
 class Hypotheses:
-    """membership : (h, c) sparse, which cells each sums. degrees : (c,) of the cells.
+    """Hypotheses "no excess here" on sums over cells. membership : (h, c) sparse, which cells each sums.
 
-    noise : (c,) number of the noise model of each cell. noise_degrees : (g,) degrees of freedom with which each noise
-    variance was estimated, inf where it is known.
+    degrees : (c,) degrees of freedom of the cells. noise : (c,) number of the noise model of each cell. noise_degrees :
+    (g,) degrees of freedom with which each noise variance was estimated, inf where it is known.
     """
 
     membership: csr_array
@@ -46,11 +51,14 @@ class Hypotheses:
         """Scores (..., h) of cell energies (..., c), nearly standard normal without an excess."""
         degrees = self.membership @ self.degrees
         ratio = np.cbrt(energies @ self.membership.T / degrees)
-        own, estimated = 2.0 / (9.0 * degrees), 2.0 / (9.0 * self._noise_degrees())
+        own, estimated = 2.0 / (9.0 * degrees), 2.0 / (9.0 * self._pooled_noise_degrees())
         return np.asarray(((1.0 - estimated) * ratio - (1.0 - own)) / np.sqrt(estimated * ratio**2 + own))
 
-    def _noise_degrees(self) -> Floats:
-        """Of each sum (h,): the relative variances of the noise models it uses, weighted (Satterthwaite 1946)."""
+    def _pooled_noise_degrees(self) -> Floats:
+        """Degrees of freedom (h,) of the estimated noise variance of each sum (Satterthwaite 1946).
+
+        The relative variances of the noise models that a sum uses are weighted by its cells.
+        """
         parts = np.zeros((len(self.noise_degrees), len(self.degrees)))
         parts[self.noise, np.arange(len(self.degrees))] = self.degrees
         shares = np.asarray(self.membership @ parts.T)

@@ -15,7 +15,9 @@ from diagnose.statistics.held_out import Forecast, forecast
 from diagnose.statistics.linear_gaussian import Sums
 from foundation.arrays import Bools, Floats, Ints
 
-STRENGTHS = np.logspace(-2.0, 6.0, 17)  # of the response, in sigma of the noise over all samples: where s is sought
+STRENGTHS_SIGMA = np.logspace(
+    -2.0, 6.0, 17
+)  # of the response, in sigma of the noise over all samples: where s is sought
 
 
 def doubling_edges(longest: int) -> Ints:
@@ -36,9 +38,9 @@ def lagged_means(drive: Floats, edges: Ints) -> Floats:
 
 
 def ridge_by_evidence(sums: Sums, prior_sigma: Floats, ridge: Bools) -> float:
-    """The common prior sigma of the coefficients marked True in ridge (k,) that maximises the evidence.
+    """Common prior sigma of the coefficients marked True in ridge (k,) that maximises the evidence.
 
-    prior_sigma : (k,) of the others, the nuisances.
+    prior_sigma : (k,) of all coefficients, read where ridge is False: the nuisances.
     """
     strength = float(np.sqrt(np.trace(sums.gram[np.ix_(ridge, ridge)])))
     if strength == 0.0:
@@ -47,7 +49,7 @@ def ridge_by_evidence(sums: Sums, prior_sigma: Floats, ridge: Bools) -> float:
     def loss(log_sigma: float) -> float:
         return -sums.log_evidence(np.where(ridge, np.exp(log_sigma), prior_sigma))
 
-    grid = np.log(STRENGTHS / strength)
+    grid = np.log(STRENGTHS_SIGMA / strength)
     best = int(np.argmin([loss(value) for value in grid]))
     around = (grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)])
     return float(np.exp(minimize_scalar(loss, bounds=around, method="bounded").x))
@@ -56,9 +58,9 @@ def ridge_by_evidence(sums: Sums, prior_sigma: Floats, ridge: Bools) -> float:
 def impulse_response_forecast(
     residual: Floats, nuisances: Floats, prior_sigma: Floats, memory: Floats, press: Ints
 ) -> Forecast:
-    """Every press predicted by nuisances (n, p) plus an impulse response on memory (n, k), fitted to the others.
+    """Forecast of every press by nuisances (n, p) plus an impulse response on memory (n, k), fitted to the others.
 
-    All whitened; prior_sigma : (p,) of the nuisances. The ridge is chosen anew from the presses that are fitted.
+    All are whitened. prior_sigma : (p,) of the nuisances. The ridge is chosen anew from the presses that are fitted.
     """
     columns = np.column_stack([nuisances, memory])
     ridge = np.arange(columns.shape[1]) >= nuisances.shape[1]

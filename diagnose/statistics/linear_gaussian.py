@@ -15,7 +15,11 @@ from foundation.arrays import Floats
 
 @dataclass(frozen=True)
 class Sums:
-    """gram : (k, k) columns' columns. moment : (k,) columns' residual. square : residual' residual. samples : n."""
+    """Sums of a linear model with k columns, which add over presses.
+
+    gram : (k, k) products of the columns with each other. moment : (k,) their products with the residual. square : sum
+    of squares of the residual. samples : number of samples.
+    """
 
     gram: Floats
     moment: Floats
@@ -23,8 +27,8 @@ class Sums:
     samples: int
 
     @classmethod
-    def of(cls, columns: Floats, residual: Floats) -> Self:
-        """From whitened columns (n, k) and residual (n,)."""
+    def from_columns(cls, columns: Floats, residual: Floats) -> Self:
+        """Sums of whitened columns (n, k) and residual (n,)."""
         return cls(columns.T @ columns, columns.T @ residual, float(residual @ residual), len(residual))
 
     def __add__(self, other: "Sums") -> "Sums":

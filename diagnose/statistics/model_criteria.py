@@ -7,7 +7,10 @@ from foundation.arrays import Floats
 
 
 def bic(log_likelihood: float, parameters: int, samples: int) -> float:
-    """q ln n - 2 ln L (Schwarz, Ann. Stat. 6 (1978) 461). samples : whitened ones, which are independent."""
+    """Schwarz's criterion q ln n - 2 ln L (Ann. Stat. 6 (1978) 461).
+
+    parameters : their number q. samples : number n of whitened samples, which are independent.
+    """
     return parameters * float(np.log(samples)) - 2.0 * log_likelihood
 
 

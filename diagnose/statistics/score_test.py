@@ -1,4 +1,4 @@
-"""Screening: does one candidate's sensitivity show in the residual, after all that may float has floated? No refit.
+"""Screening of candidates: whether the sensitivity of one shows in the residual once nuisances have floated. No refit.
 
 Rao's efficient score test (Proc. Camb. Phil. Soc. 44 (1948) 50; Bera and Bilias, J. Stat. Plan. Inference 97 (2001) 9):
 nuisances are taken out of residual and sensitivities beforehand (nuisance_projection.py). With white noise of unit
@@ -10,17 +10,24 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import nnls
 
-from diagnose.statistics.chi_bar_square import f_tail, survival, weights
-from diagnose.statistics.nuisance_projection import orthonormal
+from diagnose.statistics.chi_bar_square import chi_bar_survival, chi_bar_weights, f_tail
+from diagnose.statistics.nuisance_projection import orthonormal_basis
 from foundation.arrays import Bools, Floats
 
-CERTAIN = 1e-12  # where the chance that all degrees of freedom give is as small, the weights of fewer do not matter
-PARALLEL = 1e-6  # of its length: what is left of a sensitivity that others in the same candidate already make
+NEGLIGIBLE_P_VALUE = (
+    1e-12  # where the chance that all degrees of freedom give is as small, the weights of fewer do not matter
+)
+LEAST_INDEPENDENT_SHARE = (
+    1e-6  # of its length: what is left of a sensitivity that others in the same candidate already make
+)
 
 
 @dataclass(frozen=True)
 class ScoreTest:
-    """statistic : twice the gain in log-likelihood of the linearised fit. estimate : (q,) its parameters."""
+    """Result of a score test. statistic : twice the gain in log-likelihood of the linearised fit.
+
+    estimate : (q,) parameters.
+    """
 
     statistic: float
     p_value: float
@@ -33,20 +40,22 @@ def score_test(
     """Test one candidate of q parameters, each counted from its off value.
 
     residual : (n,), sensitivities : (n, q), both free of nuisances. non_negative : (q,) True for a parameter whose off
-    value is the lower end of its range (change the sign of one at an upper end). noise_degrees : of the estimated
-    noise variance. ValueError for too many non-negative parameters.
+    value is the lower end of its range (change the sign of one at an upper end). noise_degrees : degrees of freedom of
+    the estimated noise variance. ValueError for too many non-negative parameters.
     """
-    basis = orthonormal(sensitivities[:, ~non_negative])
+    basis = orthonormal_basis(sensitivities[:, ~non_negative])
     along = basis.T @ residual
-    bounded = _independent(sensitivities[:, non_negative], basis)
+    bounded = _independent_columns(sensitivities[:, non_negative], basis)
     columns = (sensitivities[:, non_negative] - basis @ (basis.T @ sensitivities[:, non_negative]))[:, bounded]
     rotation, triangle = np.linalg.qr(columns)
     target = rotation.T @ residual
     positive, misfit = nnls(triangle, target) if bounded else (np.zeros(0), 0.0)
     statistic = float(along @ along + target @ target - misfit**2)
     p_value = f_tail(statistic, len(bounded) + basis.shape[1], noise_degrees) if statistic > 0.0 else 1.0
-    if p_value > CERTAIN:
-        p_value = survival(statistic, weights(_unit(triangle.T @ triangle)), basis.shape[1], noise_degrees)
+    if p_value > NEGLIGIBLE_P_VALUE:
+        p_value = chi_bar_survival(
+            statistic, chi_bar_weights(_scale_to_unit_diagonal(triangle.T @ triangle)), basis.shape[1], noise_degrees
+        )
     estimate = np.zeros(len(non_negative))
     estimate[np.flatnonzero(non_negative)[bounded]] = positive
     left = residual - sensitivities @ estimate
@@ -61,24 +70,24 @@ def _least_squares(columns: Floats, target: Floats) -> Floats:
     return np.asarray(np.linalg.lstsq(columns / length, target, rcond=None)[0] / length)
 
 
-def _independent(columns: Floats, basis: Floats) -> list[int]:
-    """Columns that show beyond the basis (n, f) and the columns before them."""
+def _independent_columns(columns: Floats, basis: Floats) -> list[int]:
+    """Numbers of the columns (n, k) that show beyond the basis (n, f) and the columns before them."""
     kept: list[int] = []
     for n, column in enumerate(columns.T):
         left = column - basis @ (basis.T @ column)
-        if np.linalg.norm(left) > PARALLEL * np.linalg.norm(column):
+        if np.linalg.norm(left) > LEAST_INDEPENDENT_SHARE * np.linalg.norm(column):
             kept.append(n)
             basis = np.column_stack([basis, left / np.linalg.norm(left)])
     return kept
 
 
-def _unit(information: Floats) -> Floats:
-    """Scaled to a unit diagonal: weights do not depend on units."""
+def _scale_to_unit_diagonal(information: Floats) -> Floats:
+    """Scale an information matrix (q, q) to a unit diagonal: weights do not depend on units."""
     scale = np.sqrt(np.diag(information))
     return np.asarray(information / np.outer(scale, scale))
 
 
-def holm(p_values: Floats) -> Floats:
+def holm_p_values(p_values: Floats) -> Floats:
     """Step-down Bonferroni p-values (k,) of p-values (k,) (Holm, Scand. J. Stat. 6 (1979) 65)."""
     count = len(p_values)
     order = np.argsort(p_values)

@@ -1,4 +1,4 @@
-"""Which mechanisms these recordings cannot tell apart.
+"""How far apart models are on a set of recordings, and which of them cannot be told apart.
 
 All arrays are whitened and free of nuisances (nuisance_projection.py), so that all lengths are in units of the standard
 deviation sigma.
@@ -11,7 +11,7 @@ from itertools import combinations
 import numpy as np
 from scipy.stats import norm
 
-from diagnose.statistics.nuisance_projection import orthonormal
+from diagnose.statistics.nuisance_projection import orthonormal_basis
 from foundation.arrays import Floats
 
 Group = tuple[int, ...]
@@ -19,25 +19,31 @@ Group = tuple[int, ...]
 
 @dataclass(frozen=True)
 class Groups:
-    """groups : of models, each pair within one closer than asked. split : close pairs in different groups."""
+    """Ambiguity groups of models. groups : each pair within one is closer than asked.
+
+    split : close pairs in different groups.
+    """
 
     groups: tuple[Group, ...]
     split: tuple[tuple[int, int], ...]
 
 
 def least_separation(error: float) -> float:
-    """Sigma between two predictions at which the wrong one fits better with this probability: 2 z (Fisher 1936)."""
+    """Distance in sigma between two predictions at which the wrong one fits better with this probability.
+
+    It is 2 z (Fisher 1936).
+    """
     return 2.0 * float(norm.isf(error))
 
 
 def distance_to_rival(prediction: Floats, rival: Floats) -> float:
-    """Sigma between a fitted prediction (n,) and the nearest point of a rival's tangent space (n, q)."""
-    basis = orthonormal(rival)
+    """Distance in sigma between a fitted prediction (n,) and the nearest point of a rival's tangent space (n, q)."""
+    basis = orthonormal_basis(rival)
     return float(np.linalg.norm(prediction - basis @ (basis.T @ prediction)))
 
 
 def separations(predictions: Sequence[Floats], tangents: Sequence[Floats]) -> Floats:
-    """Symmetric matrix (m, m): how far apart two models are when the truth is the one that is easier to imitate.
+    """Symmetric matrix (m, m) of distances in sigma between models, the truth being the one that is easier to imitate.
 
     predictions : (n,) fitted change of each model. tangents : (n, q_i), its space at the off value.
     """

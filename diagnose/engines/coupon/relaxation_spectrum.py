@@ -12,7 +12,7 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 
 from diagnose.signals.recording import Recording, Run
-from diagnose.statistics.chi_bar_square import MOST
+from diagnose.statistics.chi_bar_square import MOST_NON_NEGATIVE
 
 MOST_OF_COUPON = 20.0  # of E_i / E_inf: a tape or a gel may relax by 95 % within a decade
 SPACING = 0.5  # decades between branches
@@ -30,7 +30,7 @@ def relaxation_times(recording: Recording, others: int = 0) -> tuple[float, ...]
     longest = 3.0 * max(float(run.time_s[-1] - run.time_s[0]) for run in recording.runs)
     shortest = max(min(_quickest(recording)) / 10.0, min(2.0 * run.step_s for run in recording.runs))
     decades = np.log10(longest / shortest)
-    count = int(np.clip(ceil(decades / SPACING), 1, MOST - others))
+    count = int(np.clip(ceil(decades / SPACING), 1, MOST_NON_NEGATIVE - others))
     spacing = max(SPACING, decades / count)
     first = 0.5 * (decades - spacing * (count - 1))
     return tuple(float(shortest * 10.0 ** (first + spacing * n)) for n in range(count))

@@ -52,7 +52,7 @@ def test_columns_are_means_of_the_past_drive():
 
 def test_the_evidence_finds_the_prior_that_drew_the_response():
     columns = RNG.standard_normal((400, 60))
-    found = [ridge_by_evidence(Sums.of(columns, columns @ RNG.normal(0.0, 0.7, 60) + RNG.standard_normal(400)),
+    found = [ridge_by_evidence(Sums.from_columns(columns, columns @ RNG.normal(0.0, 0.7, 60) + RNG.standard_normal(400)),
                                np.zeros(60), np.ones(60, dtype=bool)) for _ in range(10)]  # fmt: skip
     assert np.mean(found) == pytest.approx(0.7, rel=0.1)
 

@@ -5,20 +5,20 @@ import pytest
 from scipy.fft import dct
 from scipy.stats import chi2, kstest
 
-from diagnose.statistics.cells import FilterBank, octave_edges, segments
-from diagnose.statistics.hypotheses import pooled
+from diagnose.statistics.cells import FilterBank, octave_edges_Hz, time_segments
+from diagnose.statistics.hypotheses import pool_membership
 
 STEP_S = 0.01
 RUN = np.repeat([0, 1], [300, 340])
 PHASE = np.concatenate([np.repeat([1, 2, 3], 100), np.repeat([1, 2, 3], [120, 20, 200])])
-PIECES = segments({"run": RUN, "phase": PHASE}, np.full(640, STEP_S))
-BANK = FilterBank(PIECES, octave_edges(3.0, STEP_S))
+PIECES = time_segments({"run": RUN, "phase": PHASE}, np.full(640, STEP_S))
+BANK = FilterBank(PIECES, octave_edges_Hz(3.0, STEP_S))
 
 
 def test_segments_are_cut_where_a_label_or_the_rate_changes():
     assert [p.samples.stop - p.samples.start for p in PIECES] == [100, 100, 100, 120, 20, 200]
     assert dict(PIECES[4].labels) == {"run": 1, "phase": 2}
-    assert len(segments({"run": np.zeros(6, int)}, np.array([1.0, 1.0, 2.0, 2.0, 2.0, 2.0]))) == 2
+    assert len(time_segments({"run": np.zeros(6, int)}, np.array([1.0, 1.0, 2.0, 2.0, 2.0, 2.0]))) == 2
 
 
 def test_energies_add_up_to_the_sum_of_squares():
@@ -71,7 +71,7 @@ def test_a_tone_shows_in_its_segment_and_band():
 
 
 def test_octaves_end_at_half_the_sampling_rate():
-    edges = octave_edges(3.0, STEP_S)
+    edges = octave_edges_Hz(3.0, STEP_S)
     assert edges[0] == 0.0
     assert edges[-1] == 50.0
     np.testing.assert_allclose(edges[2:] / edges[1:-1], 2.0)
@@ -79,11 +79,11 @@ def test_octaves_end_at_half_the_sampling_rate():
 
 
 def test_pooling_over_a_label_sums_its_cells():
-    membership = pooled(BANK.cells, over={"run"}).toarray()
+    membership = pool_membership(BANK.cells, over={"run"}).toarray()
     values = np.random.default_rng(4).standard_normal(640)
     np.testing.assert_array_equal(membership.sum(axis=0), 1.0)
     assert len(membership) < len(BANK.cells)
     assert (membership @ BANK.energies(values)).sum() == pytest.approx(values @ values)
     for row in membership:
         assert len({(BANK.cells[n].labels["phase"], BANK.cells[n].band_Hz) for n in np.flatnonzero(row)}) == 1
-    np.testing.assert_array_equal(pooled(BANK.cells, over={"run", "phase", "band_Hz"}).toarray(), 1.0)
+    np.testing.assert_array_equal(pool_membership(BANK.cells, over={"run", "phase", "band_Hz"}).toarray(), 1.0)

@@ -5,24 +5,26 @@ import pytest
 from scipy.optimize import nnls
 from scipy.stats import chi2, f
 
-from diagnose.statistics.chi_bar_square import orthant, survival, weights
+from diagnose.statistics.chi_bar_square import chi_bar_survival, chi_bar_weights, orthant_probability
 from tests.cases import for_each
 
 
 def test_one_parameter_is_half_a_chi_square():
-    np.testing.assert_allclose(weights(np.eye(1)), [0.5, 0.5])
-    assert survival(2.7055, weights(np.eye(1))) == pytest.approx(0.05, rel=1e-4)
+    np.testing.assert_allclose(chi_bar_weights(np.eye(1)), [0.5, 0.5])
+    assert chi_bar_survival(2.7055, chi_bar_weights(np.eye(1))) == pytest.approx(0.05, rel=1e-4)
 
 
 @for_each("correlation", [-0.9, -0.3, 0.0, 0.5, 0.99])
 def test_two_parameters_have_the_weights_of_their_angle(correlation):
     """w_2 = arccos(-(correlation of the information)) ... of the estimates: 1/4 + arcsin(-rho) / 2 pi; w_1 = 1/2."""
     both = 0.25 - np.arcsin(correlation) / (2.0 * np.pi)
-    np.testing.assert_allclose(weights(np.array([[1.0, correlation], [correlation, 1.0]])), [0.5 - both, 0.5, both])
+    np.testing.assert_allclose(
+        chi_bar_weights(np.array([[1.0, correlation], [correlation, 1.0]])), [0.5 - both, 0.5, both]
+    )
 
 
 def test_independent_parameters_have_binomial_weights():
-    np.testing.assert_allclose(weights(np.eye(4)) * 16.0, [1.0, 4.0, 6.0, 4.0, 1.0], rtol=1e-3)
+    np.testing.assert_allclose(chi_bar_weights(np.eye(4)) * 16.0, [1.0, 4.0, 6.0, 4.0, 1.0], rtol=1e-3)
 
 
 def like(shared):
@@ -41,28 +43,28 @@ def test_weights_against_projection_by_brute_force(design):
     rng, (samples, count) = np.random.default_rng(4), design.shape
     positive = [int((nnls(design, rng.standard_normal(samples))[0] > 0.0).sum()) for _ in range(8000)]
     counted = np.bincount(positive, minlength=count + 1) / 8000
-    found = weights(design.T @ design)
+    found = chi_bar_weights(design.T @ design)
     np.testing.assert_allclose(found, counted, atol=4.0 * np.sqrt(found * (1.0 - found) / 8000).max())
 
 
 def test_even_and_odd_weights_share_equally():
     """The Gauss-Bonnet relation of polyhedral cones (Shapiro 1988), of weights that all have a closed form."""
-    assert weights(like(0.5).T @ like(0.5))[::2].sum() == pytest.approx(0.5, abs=1e-12)
+    assert chi_bar_weights(like(0.5).T @ like(0.5))[::2].sum() == pytest.approx(0.5, abs=1e-12)
 
 
 def test_orthants_of_equal_correlation_one_half():
     """P = 1 / (n + 1)."""
     for count in (1, 2, 3, 4, 5):
         covariance = np.full((count, count), 0.5) + 0.5 * np.eye(count)
-        assert orthant(covariance) == pytest.approx(1.0 / (count + 1), rel=2e-3)
+        assert orthant_probability(covariance) == pytest.approx(1.0 / (count + 1), rel=2e-3)
 
 
 def test_free_parameters_and_estimated_noise_change_the_terms():
-    assert survival(4.0, np.array([1.0]), unbounded=2) == pytest.approx(chi2.sf(4.0, 2))
+    assert chi_bar_survival(4.0, np.array([1.0]), unbounded=2) == pytest.approx(chi2.sf(4.0, 2))
     mixed = 0.5 * f.sf(4.0, 1, 30) + 0.5 * f.sf(2.0, 2, 30)
-    assert survival(4.0, np.array([0.5, 0.5]), 1, 30.0) == pytest.approx(mixed)
+    assert chi_bar_survival(4.0, np.array([0.5, 0.5]), 1, 30.0) == pytest.approx(mixed)
 
 
 def test_too_many_parameters_are_refused():
     with pytest.raises(ValueError, match="at most 8"):
-        weights(np.eye(9))
+        chi_bar_weights(np.eye(9))

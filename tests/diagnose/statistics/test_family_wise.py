@@ -5,22 +5,22 @@ import pytest
 from scipy.sparse import eye_array
 from scipy.stats import chi2, kstest
 
-from diagnose.statistics.cells import FilterBank, octave_edges, segments
-from diagnose.statistics.family_wise import null_energies, step_down
-from diagnose.statistics.hypotheses import Hypotheses, with_pools
+from diagnose.statistics.cells import FilterBank, octave_edges_Hz, time_segments
+from diagnose.statistics.family_wise import null_energies, step_down_p_values
+from diagnose.statistics.hypotheses import Hypotheses, membership_with_pools
 from diagnose.statistics.nuisance_projection import Marginal
 from tests.diagnose.statistics.rejections import is_fair
 
 COUNT, LEVEL, TRIALS = 400, 0.05, 400
 PHASE = np.repeat(np.arange(5), 80)
-BANK = FilterBank(segments({"phase": PHASE}, np.full(COUNT, 0.01)), octave_edges(0.8, 0.01))
+BANK = FilterBank(time_segments({"phase": PHASE}, np.full(COUNT, 0.01)), octave_edges_Hz(0.8, 0.01))
 TIME = np.linspace(0.0, 1.0, COUNT)
 TANGENT = np.column_stack([np.ones(COUNT), TIME, np.exp(-8.0 * TIME)])
 
 
 def hypotheses(noise_degrees=np.inf):
     """Every cell, and the sums over all phases of each band: these share cells, so their scores are correlated."""
-    members, noise = with_pools(BANK.cells, [{"phase"}]), np.zeros(len(BANK.cells), int)
+    members, noise = membership_with_pools(BANK.cells, [{"phase"}]), np.zeros(len(BANK.cells), int)
     return Hypotheses(members, BANK.degrees, noise, np.array([noise_degrees]))
 
 
@@ -37,7 +37,7 @@ def rejections(family, null, marginal, noise_degrees=None):
         residual = rng.standard_normal(COUNT) + nuisances
         if noise_degrees is not None:
             residual /= np.sqrt(rng.chisquare(noise_degrees) / noise_degrees)
-        count += step_down(family.scores(BANK.energies(marginal(residual))), null).min() <= LEVEL
+        count += step_down_p_values(family.scores(BANK.energies(marginal(residual))), null).min() <= LEVEL
     return count
 
 
@@ -77,7 +77,7 @@ def test_an_effect_in_one_phase_and_band_is_found_there_alone():
     own = [n for n, c in enumerate(BANK.cells) if c.labels["phase"] == 3 and c.band_Hz[0] <= 9.0 < c.band_Hz[1]]
     found, elsewhere = 0, 0
     for _ in range(100):
-        adjusted = step_down(family.scores(BANK.energies(marginal(rng.standard_normal(COUNT) + effect))), null)
+        adjusted = step_down_p_values(family.scores(BANK.energies(marginal(rng.standard_normal(COUNT) + effect))), null)
         found += adjusted[own[0]] <= LEVEL
         quiet = [n for n, c in enumerate(BANK.cells) if c.labels["phase"] not in (3,)]
         elsewhere += adjusted[quiet].min() <= LEVEL
@@ -88,7 +88,7 @@ def test_an_effect_in_one_phase_and_band_is_found_there_alone():
 def test_step_down_finds_more_than_the_single_step_and_keeps_the_order():
     null = np.random.default_rng(10).standard_normal((4000, 6))
     observed = np.array([5.0, 2.5, 2.2, -1.0, 0.3, 0.0])
-    adjusted = step_down(observed, null)
+    adjusted = step_down_p_values(observed, null)
     single = (1 + (null.max(axis=1)[:, None] >= observed).sum(axis=0)) / 4001
     assert adjusted[0] == single[0] == pytest.approx(1 / 4001)
     assert np.all(adjusted <= single)

@@ -18,8 +18,8 @@ def test_it_approaches_the_exact_evidence_of_a_unit_information_prior():
     columns *= np.sqrt(2000.0)
     residual = rng.standard_normal(2000)
     fit, *_ = np.linalg.lstsq(columns, residual)
-    log_likelihood = Sums.of(np.zeros((2000, 0)), residual - columns @ fit).log_evidence(np.zeros(0))
-    exact = Sums.of(columns, residual).log_evidence(np.ones(2))
+    log_likelihood = Sums.from_columns(np.zeros((2000, 0)), residual - columns @ fit).log_evidence(np.zeros(0))
+    exact = Sums.from_columns(columns, residual).log_evidence(np.ones(2))
     assert bic(log_likelihood, 2, 2000) == pytest.approx(-2.0 * exact, abs=0.02)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from diagnose.statistics.nuisance_projection import Marginal, orthonormal, posterior
+from diagnose.statistics.nuisance_projection import Marginal, orthonormal_basis, posterior
 
 RNG = np.random.default_rng(11)
 TANGENT, SIGMA = RNG.standard_normal((30, 4)) * [1.0, 5.0, 0.1, 2.0], np.array([0.3, 2.0, 1.0, 0.05])
@@ -45,5 +45,5 @@ def test_the_posterior_is_that_of_conditioning_the_joint_normal():
 
 def test_units_of_a_column_do_not_decide_whether_it_counts():
     columns = RNG.standard_normal((20, 2)) * [1.0, 1e-12]
-    assert orthonormal(columns).shape == (20, 2)
-    assert orthonormal(np.column_stack([columns, columns.sum(axis=1), np.zeros(20)])).shape[1] == 2
+    assert orthonormal_basis(columns).shape == (20, 2)
+    assert orthonormal_basis(np.column_stack([columns, columns.sum(axis=1), np.zeros(20)])).shape[1] == 2

@@ -5,15 +5,15 @@ from functools import cache
 import numpy as np
 
 from diagnose.statistics.abstain import Evidence, decide
-from diagnose.statistics.cells import FilterBank, octave_edges, segments
+from diagnose.statistics.cells import FilterBank, octave_edges_Hz, time_segments
 from diagnose.statistics.error_rates import Rates
-from diagnose.statistics.family_wise import null_energies, step_down
+from diagnose.statistics.family_wise import null_energies, step_down_p_values
 from diagnose.statistics.held_out import gain_over_noise
-from diagnose.statistics.hypotheses import Hypotheses, with_pools
+from diagnose.statistics.hypotheses import Hypotheses, membership_with_pools
 from diagnose.statistics.impulse_response import doubling_edges, impulse_response_forecast, lagged_means
 from diagnose.statistics.nuisance_projection import Marginal
 from diagnose.statistics.proportions import rate_for_promise
-from diagnose.statistics.score_test import holm, score_test
+from diagnose.statistics.score_test import holm_p_values, score_test
 from tests.diagnose.statistics.forecasts import linear_forecast, separation_by_press
 
 PRESSES, LENGTH, CANDIDATES = 8, 60, 20
@@ -23,9 +23,9 @@ DEPTH = np.linspace(0.5, 1.5, PRESSES)
 DRIVE = np.sin(np.pi * TIME)
 NUISANCES, PRIOR = np.column_stack([np.outer(DEPTH, DRIVE).ravel(), np.ones(len(PRESS))]), np.array([5.0, np.inf])
 WIDE = 100.0  # prior deviation of every mechanism's parameter
-BANK = FilterBank(segments({"press": PRESS}, np.full(len(PRESS), TIME[1])), octave_edges(1.0, TIME[1]))
+BANK = FilterBank(time_segments({"press": PRESS}, np.full(len(PRESS), TIME[1])), octave_edges_Hz(1.0, TIME[1]))
 FAMILY = Hypotheses(
-    with_pools(BANK.cells, [{"press"}, {"press", "band_Hz"}]),
+    membership_with_pools(BANK.cells, [{"press"}, {"press", "band_Hz"}]),
     BANK.degrees,
     np.zeros(len(BANK.cells), int),
     np.array([np.inf]),
@@ -61,7 +61,7 @@ def columns_of(candidate, sigma=WIDE):
 
 def p_of_residual(residual, candidate):
     marginal, null = null_scores(candidate)
-    return step_down(FAMILY.scores(BANK.energies(marginal(residual))), null).min()
+    return step_down_p_values(FAMILY.scores(BANK.energies(marginal(residual))), null).min()
 
 
 def diagnosed(residual):
@@ -71,7 +71,7 @@ def diagnosed(residual):
         return decide(Evidence(p_mismatch, 1.0, 1.0, 0.0, 0.0, (), 1), RATES), None
     white = MARGINAL(residual)
     p_values = [score_test(white, MARGINAL(s[:, None]), np.array([True])).p_value for s in SENSITIVITIES]
-    survivors = np.flatnonzero(holm(np.array(p_values)) <= RATES.level)
+    survivors = np.flatnonzero(holm_p_values(np.array(p_values)) <= RATES.level)
     if len(survivors) == 0:
         return decide(Evidence(p_mismatch, 0.0, 1.0, -1.0, 0.0, (), 1), RATES), None
     forecasts = {int(c): linear_forecast(residual, *columns_of(c), PRESS) for c in survivors}

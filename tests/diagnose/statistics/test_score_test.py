@@ -5,7 +5,7 @@ import pytest
 from scipy.stats import norm
 
 from diagnose.statistics.nuisance_projection import Marginal
-from diagnose.statistics.score_test import holm, score_test
+from diagnose.statistics.score_test import holm_p_values, score_test
 from tests.cases import for_each
 from tests.diagnose.statistics.rejections import is_fair
 
@@ -75,11 +75,11 @@ def test_a_parameter_that_repeats_another_adds_nothing():
 
 
 def test_holm_by_hand():
-    np.testing.assert_allclose(holm(np.array([0.01, 0.04, 0.03, 0.9])), [0.04, 0.09, 0.09, 0.9])
-    assert np.all(holm(np.full(5, 0.5)) == 1.0)
+    np.testing.assert_allclose(holm_p_values(np.array([0.01, 0.04, 0.03, 0.9])), [0.04, 0.09, 0.09, 0.9])
+    assert np.all(holm_p_values(np.full(5, 0.5)) == 1.0)
 
 
 def test_holm_keeps_the_family_wise_level_and_beats_bonferroni():
     p_values = np.random.default_rng(22).uniform(size=(TRIALS, 30))
-    assert is_fair(sum(holm(p).min() <= LEVEL for p in p_values), TRIALS, 1.0 - (1.0 - LEVEL / 30) ** 30)
-    assert np.all(holm(p_values[0]) <= np.minimum(30.0 * p_values[0], 1.0))
+    assert is_fair(sum(holm_p_values(p).min() <= LEVEL for p in p_values), TRIALS, 1.0 - (1.0 - LEVEL / 30) ** 30)
+    assert np.all(holm_p_values(p_values[0]) <= np.minimum(30.0 * p_values[0], 1.0))
