@@ -21,7 +21,7 @@ from scipy.signal import lfilter
 
 from benchmarks.timing import Table, file_argument
 from diagnose.inference.true_refit import split
-from diagnose.signals.reading import thinned
+from diagnose.signals.reading import thin_recording
 from diagnose.signals.recording import Recording, Run
 from foundation.arrays import Bools, Floats
 from softdot.config.rig import RIG_FILE, load_rig
@@ -169,7 +169,7 @@ def main(path: Path, folders: list[Path]) -> None:
     """Fit what the file has not."""
     table = Table(path, "experts")
     for folder in sorted(place.parent for root in folders for place in root.rglob(RIG_FILE)):
-        recording = thinned(load_rig(folder).recording)
+        recording = thin_recording(load_rig(folder).recording)
         presses = [(n, press) for n, found in enumerate(recording.phases) for press in range(len(found.presses))]
         train, held = ([presses[n] for n in numbers] for numbers in split(len(presses)))
         for name, expert in experts_of(recording).items():

@@ -25,7 +25,7 @@ from benchmarks.timing import file_argument
 from diagnose.engines.segment.engine import SegmentEngine
 from diagnose.forward import Candidate, Setting
 from diagnose.inference.diagnose import diagnose
-from diagnose.signals.recording import Recording, Run, one_after_the_other
+from diagnose.signals.recording import Recording, Run, with_earlier_drives
 from diagnose.verdict.names import short_name
 from softdot.config.loading import config_from
 from softdot.config.rig import RIG_FILE, Bench, Rig
@@ -67,7 +67,7 @@ def run(label: str, depth_mm: float, rise_s: float, hold_s: float) -> Run:
     return Run(label, f"{label}.csv", time, "displacement_mm", channels, there, nowhere, readout=Readout(**READOUT))
 
 
-RUNS = tuple(one_after_the_other([run("deep", 0.25, 0.2, 0.4), replace(run("shallow", 0.15, 0.1, 0.6), virgin=False)]))
+RUNS = tuple(with_earlier_drives([run("deep", 0.25, 0.2, 0.4), replace(run("shallow", 0.15, 0.1, 0.6), virgin=False)]))
 
 
 def rig_of(folder: Path, tables: dict[str, Any], recording: Recording) -> Rig:

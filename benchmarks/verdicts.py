@@ -17,9 +17,9 @@ from typing import Any
 from benchmarks.timing import Table, file_argument
 from diagnose.findings import Findings
 from diagnose.inference.diagnose import diagnose
-from diagnose.signals.reading import averaged, thinned
+from diagnose.signals.reading import average_blocks, thin_recording
 from diagnose.signals.recording import Recording
-from diagnose.signals.run_checks import FEWEST
+from diagnose.signals.run_checks import FEWEST_SAMPLES
 from diagnose.verdict.names import short_name
 from softdot.config.rig import RIG_FILE, load_rig
 from softdot.diagnosis.engine import engine_for
@@ -31,9 +31,9 @@ def averaged_over(factor: int) -> Callable[[Recording], Recording | None]:
     """Means over so many samples in a row; None where too few would stay."""
 
     def change(recording: Recording) -> Recording | None:
-        if min(len(run.time_s) for run in recording.runs) < factor * FEWEST:
+        if min(len(run.time_s) for run in recording.runs) < factor * FEWEST_SAMPLES:
             return None
-        return replace(recording, runs=tuple(averaged(run, factor) for run in recording.runs))
+        return replace(recording, runs=tuple(average_blocks(run, factor) for run in recording.runs))
 
     return change
 
@@ -97,7 +97,7 @@ def truth_of(folder: Path) -> str | None:
 def diagnosed(folder: Path, variant: str) -> dict[str, Any] | None:
     """The row of one recording; None where the variant says nothing new."""
     rig = load_rig(folder)
-    changed = VARIANTS[variant](thinned(rig.recording))
+    changed = VARIANTS[variant](thin_recording(rig.recording))
     if changed is None:
         return None
     rig = replace(rig, recording=changed)

@@ -10,13 +10,13 @@ import numpy as np
 
 from diagnose.fit.samples import Samples
 from diagnose.forward import Signals
-from diagnose.signals.phases import rest_of
+from diagnose.signals.phases import rest_level
 from foundation.arrays import Floats
 
 
 def drive_noise(samples: Samples, signals: Sequence[Signals]) -> Floats:
     """Variance (n,) that is added to each coefficient; 0 where the drive is a command without noise."""
-    sigma = [rest_of(run.drive_values)[1] for run in samples.recording.runs]
+    sigma = [rest_level(run.drive_values)[1] for run in samples.recording.runs]
     added = np.zeros(len(samples))
     for block in samples.blocks:
         run = samples.recording.runs[block.run]

@@ -57,7 +57,7 @@ class ObservedModel:
     def imagined(self, run: int, drive: Floats, values: Floats, settings: Sequence[Setting]) -> dict[str, Floats]:
         """What its instruments would show if the drive (t,) of a run had been another one. ValueError as the engine."""
         of = self.runs[run]
-        raw = self.engine.imagine(of.along(drive), [*self._settings(run, values), *settings])
+        raw = self.engine.imagine(of.with_drive(drive), [*self._settings(run, values), *settings])
         told = (self.nuisances, values, run)
         return {name: observed(of, name, raw[name], by_name(*told, name)) for name in of.answers}
 

@@ -103,7 +103,7 @@ class PressSearch:
 
     def _told(self, proposals: Sequence[Proposal]) -> Iterator[tuple[Proposal, Floats]]:
         for proposal in proposals:
-            proposal = replace(proposal, run=self.recording.after_all(proposal.run))
+            proposal = replace(proposal, run=self.recording.as_next_run(proposal.run))
             try:
                 yield proposal, self.judge.separations(proposal)
             except ValueError:  # beyond what the model was prepared for

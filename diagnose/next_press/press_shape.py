@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from diagnose.signals.phases import PressPhases, rest_of
+from diagnose.signals.phases import PressPhases, rest_level
 from diagnose.signals.recording import Recording, Run
 from foundation.arrays import Floats
 
@@ -65,7 +65,7 @@ def _complete(press: PressPhases, run: Run) -> bool:
 def _shape(run: Run, press: PressPhases) -> Shape:
     time, drive = run.time_s, run.drive_values
     at_depth = drive[press.held : press.released] if press.released > press.held else drive[press.held - 1 : press.held]
-    level = min(rest_of(drive)[0], 0.0) if run.drive == "displacement_mm" else 0.0
+    level = min(rest_level(drive)[0], 0.0) if run.drive == "displacement_mm" else 0.0
     return Shape(
         level=float(level),
         deep=float(np.median(at_depth)),

@@ -15,7 +15,7 @@ from scipy.signal import lfilter, lfiltic
 from diagnose.noise.autoregression import Autoregression
 from diagnose.noise.innovations import innovations
 from diagnose.noise.mains_lines import Line, line_basis
-from diagnose.signals.recording import even_pieces, is_even
+from diagnose.signals.recording import even_pieces, is_evenly_sampled
 from foundation.arrays import Bools, Floats
 
 SAME_RATE_TOLERANCE = 0.1  # relative: at another rate the autoregression says only how large the noise is
@@ -150,7 +150,7 @@ def _autoregression_at_rate(noise: NoiseModel, time_s: Floats) -> Autoregression
     if len(time_s) < 2:
         return own
     same = abs(float(np.median(np.diff(time_s))) / noise.step_s - 1.0) < SAME_RATE_TOLERANCE
-    if len(own.coefficients) == 0 or (same and is_even(time_s)):
+    if len(own.coefficients) == 0 or (same and is_evenly_sampled(time_s)):
         return own
     return Autoregression(np.zeros(0), float(own.autocovariance(1)[0]))
 

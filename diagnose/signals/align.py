@@ -15,13 +15,13 @@ from scipy.signal import correlate
 from diagnose.noise.autoregression import fit_autoregression
 from foundation.arrays import Floats
 
-ROUNDS = 20
-FINEST = 1e-5  # steps: no lag is known better
+MAX_ITERATIONS = 20
+FINEST_LAG_STEPS = 1e-5  # no lag is known better
 
 
 @dataclass(frozen=True)
 class Lag:
-    """lag_s : by how much the signal comes later than the reference. sigma_s : its standard error.
+    """Lag of a signal behind a reference. lag_s : by how much the signal comes later. sigma_s : its standard error.
 
     correlation : of signal and shifted reference, -1 to 1.
     """
@@ -32,26 +32,27 @@ class Lag:
 
 
 def lag_between(reference: Floats, signal: Floats, step_s: float, largest_s: float | None = None) -> Lag:
-    """Lag of a signal (n,) behind a reference (m,) that start together, both every step_s.
+    """Lag of a signal (n,) behind a reference (m,) that start together, both sampled every step_s.
 
-    largest_s : largest lag that is sought, either way; half of the shorter one if None. ValueError for a constant.
+    largest_s : largest lag that is sought, either way; half of the shorter one if None. ValueError for a constant
+    signal.
     """
     if np.ptp(reference) == 0.0 or np.ptp(signal) == 0.0:
         raise ValueError("a constant has no lag")
     limit = min(len(reference), len(signal)) / 2.0
     limit = limit if largest_s is None else min(limit, largest_s / step_s)
-    shift = float(_coarse(reference, signal, int(limit)))
+    shift = float(_whole_step_shift(reference, signal, int(limit)))
     spline = CubicSpline(np.arange(len(reference)), reference)
-    for _ in range(ROUNDS):
-        fit = _fitted(spline, len(reference), signal, shift)
+    for _ in range(MAX_ITERATIONS):
+        fit = _fit_shift(spline, len(reference), signal, shift)
         shift = float(np.clip(shift + fit.update, -limit, limit))
-        if abs(fit.update) < FINEST:
+        if abs(fit.update) < FINEST_LAG_STEPS:
             break
-    return Lag(shift * step_s, max(_standard_error(fit), FINEST) * step_s, fit.correlation)
+    return Lag(shift * step_s, max(_standard_error_steps(fit), FINEST_LAG_STEPS) * step_s, fit.correlation)
 
 
-def _coarse(reference: Floats, signal: Floats, limit: int) -> int:
-    """Whole steps at which the magnitude of the cross-correlation is largest."""
+def _whole_step_shift(reference: Floats, signal: Floats, limit: int) -> int:
+    """Shift in whole steps, up to a limit, at which the magnitude of the cross-correlation is largest."""
     product = np.abs(correlate(signal - signal.mean(), reference - reference.mean(), mode="full", method="fft"))
     shifts = np.arange(len(product)) - (len(reference) - 1)
     allowed = np.abs(shifts) <= limit
@@ -60,9 +61,10 @@ def _coarse(reference: Floats, signal: Floats, limit: int) -> int:
 
 @dataclass(frozen=True)
 class _Fit:
-    """update : Gauss-Newton step of the shift. sensitivity : (n,) to the shift, gain and offset projected out.
+    """Fit linear about a shift. update : Gauss-Newton step of the shift, in steps.
 
-    rest : (n,) what is left of the signal.
+    sensitivity : (n,) of the signal to the shift, gain and offset projected out. rest : (n,) what is left of the
+    signal. correlation : of signal and shifted reference.
     """
 
     update: float
@@ -71,8 +73,8 @@ class _Fit:
     correlation: float
 
 
-def _fitted(spline: CubicSpline, length: int, signal: Floats, shift: float) -> _Fit:
-    """Least squares for shift, gain and offset, linear about a shift; all in steps."""
+def _fit_shift(spline: CubicSpline, length: int, signal: Floats, shift: float) -> _Fit:
+    """Least-squares fit of shift, gain and offset, linear about a shift; all in steps."""
     place = np.arange(len(signal)) - shift
     inside = (place >= 0.0) & (place <= length - 1.0)
     template, slope, values = spline(place[inside]), spline(place[inside], 1), signal[inside]
@@ -86,8 +88,11 @@ def _fitted(spline: CubicSpline, length: int, signal: Floats, shift: float) -> _
     return _Fit(update, sensitivity, rest, float(np.corrcoef(template, values)[0, 1]))
 
 
-def _standard_error(fit: _Fit) -> float:
-    """Of the shift, in steps: sqrt(w' C w) / w' w, with C of an autoregression fitted to the rest, by its density."""
+def _standard_error_steps(fit: _Fit) -> float:
+    """Standard error of the shift, in steps: sqrt(w' C w) / w' w with the sensitivity w.
+
+    C is the covariance of an autoregression fitted to the rest, applied by its spectral density.
+    """
     weights, count = fit.sensitivity, 2 * len(fit.sensitivity)
     density = 0.5 * fit_autoregression([fit.rest]).spectral_density(
         np.asarray(np.fft.fftfreq(count), dtype=np.float64), 1.0

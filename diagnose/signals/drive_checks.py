@@ -1,21 +1,23 @@
 """Whether a drive can be what it is called: its sign, its zero, its size, and a force that drifts.
-They come before all that a diagnosis asks for: with a wrong sign rests are presses, and noise is sought in vain.
+
+These checks come before all that a diagnosis asks for: with a wrong sign rests are presses, and noise is sought in
+vain.
 """
 
 from pathlib import Path
 
 import numpy as np
 
-from diagnose.signals.phases import rest_of
+from diagnose.signals.phases import rest_level
 from diagnose.signals.recording import Run, Specimen
 from foundation.arrays import Bools, Floats
 from foundation.errors import InputError
 
-AGAINST = -0.5
+OPPOSED_CORRELATION = -0.5
 """Correlation of a displacement with a force: below it one of the two has the wrong sign."""
-ADHESION = 2.0
+LARGEST_ADHESION_RATIO = 2.0
 """A dot that is let go may pull, but hardly with this many times the force of its press."""
-LOWEST, FLAT = 0.15, 0.1
+LOWEST_RANGE_SHARE, FLAT_SLOPE_SHARE = 0.15, 0.1
 """Where the drive is lowest, in shares of its range, a force that rises less than this part of the whole rise has not
 begun to: of a sphere's it is two fifths (Hertz), of a flat punch's all.
 """
@@ -23,7 +25,7 @@ SHALLOWEST_MM = 0.002
 """By which a moulded surface gives way before it bears."""
 FASTEST_MM_PER_S = 3e3
 """The range of a drive over the time of its whole run: faster is an impact, and no press."""
-DRIFT = 0.1  # of the range of a force, between the samples before a press and behind it
+DRIFT_RANGE_SHARE = 0.1  # of the range of a force, between the samples before a press and behind it
 
 
 def refuse_unlike_drive(run: Run, path: Path, specimen: Specimen | None, height_mm: float) -> None:
@@ -32,12 +34,12 @@ def refuse_unlike_drive(run: Run, path: Path, specimen: Specimen | None, height_
     height_mm : of the segment, infinite where it is not known.
     """
     where = f"recording '{path}', column"
-    _refuse_opposed(run, where)
+    _refuse_opposed_signs(run, where)
     if specimen is not None:
-        _refuse_turned_coupon(run, specimen, where)
+        _refuse_wrong_sign_of_coupon(run, specimen, where)
         return
     force = run.channels.get("force_N")
-    if force is not None and _turned(_measured(run, "force_N"), ADHESION):
+    if force is not None and _has_wrong_sign(_measured_values(run, "force_N"), LARGEST_ADHESION_RATIO):
         raise InputError(
             f"{where} force_N: goes down to {np.nanmin(force):.3g} N and up to {np.nanmax(force):.3g} N only; force "
             "counts positive in compression, turn its sign"
@@ -51,13 +53,13 @@ def drive_suspicions(run: Run, path: Path) -> list[str]:
     """Sentences on a displacement that rests inside the segment, and on a force that drifts."""
     if run.drive != "displacement_mm":
         return []
-    level, noise = rest_of(run.drive_values)
+    level, noise = rest_level(run.drive_values)
     if (deepest := float(run.drive_values.max())) < SHALLOWEST_MM:
         return [
             f"recording '{path}', column displacement_mm: reaches {deepest:.3g} mm only, less than a surface gives way "
             "before it bears; is it in millimetres?"
         ]
-    said = _drifts(run, path) if "force_N" in run.channels else []
+    said = _drift_sentences(run, path) if "force_N" in run.channels else []
     if level > max(5.0 * noise, 0.05 * float(np.ptp(run.drive_values))):
         said.append(
             f"recording '{path}', column displacement_mm: is {level:.3g} mm before it moves, which is inside the "
@@ -66,8 +68,8 @@ def drive_suspicions(run: Run, path: Path) -> list[str]:
     return said
 
 
-def _drifts(run: Run, path: Path) -> list[str]:
-    """A sentence where the force is beyond its range while the dot is clear, or another one after the presses."""
+def _drift_sentences(run: Run, path: Path) -> list[str]:
+    """Sentences on a force that differs after the presses from that before them, both clear of the dot; at most one."""
     clear = run.usable("force_N") & (run.drive_values < 0.0)
     touching = np.flatnonzero(run.drive_values > 0.0)
     if not len(touching):
@@ -81,34 +83,34 @@ def _drifts(run: Run, path: Path) -> list[str]:
     whole = float(np.ptp(force[run.usable("force_N")]))
     if min(abs(first), abs(last)) > max(whole, 3.0 * run.nuisance.get("offset_N", 0.0)):
         return [f"recording '{path}', column force_N: is {first:.3g} N while nothing touches; is its zero off?"]
-    if abs(last - first) < DRIFT * whole:
+    if abs(last - first) < DRIFT_RANGE_SHARE * whole:
         return []
     return [
         f"recording '{path}', column force_N: drifts from {first:.3g} to {last:.3g} N while nothing touches, which is "
-        f"more than {DRIFT:.0%} of its range"
+        f"more than {DRIFT_RANGE_SHARE:.0%} of its range"
     ]
 
 
-def _measured(run: Run, name: str) -> Floats:
+def _measured_values(run: Run, name: str) -> Floats:
     return run.channels[name][run.valid[name]]
 
 
-def _both(run: Run) -> Bools:
-    """Samples at which displacement and force were measured; none where one was not recorded."""
+def _both_measured(run: Run) -> Bools:
+    """Flags (t,) of samples at which displacement and force were measured; none where one was not recorded."""
     if not {"displacement_mm", "force_N"} <= run.channels.keys():
         return np.zeros(len(run.time_s), dtype=bool)
     return run.valid["displacement_mm"] & run.valid["force_N"]
 
 
-def _refuse_opposed(run: Run, where: str) -> None:
-    there = _both(run)
+def _refuse_opposed_signs(run: Run, where: str) -> None:
+    there = _both_measured(run)
     if there.sum() < 3:
         return
     displacement, force = run.channels["displacement_mm"][there], run.channels["force_N"][there]
     if min(np.ptp(displacement), np.ptp(force)) == 0.0:
         return
     correlation = float(np.corrcoef(displacement, force)[0, 1])
-    if correlation < AGAINST:
+    if correlation < OPPOSED_CORRELATION:
         raise InputError(
             f"{where} displacement_mm: runs against force_N (correlation {correlation:.2f}): displacement counts "
             "positive into the segment or along the test, force positive in it; turn the sign of one of them"
@@ -124,15 +126,15 @@ def _refuse_too_fast(run: Run, where: str) -> None:
         )
 
 
-def _turned(values: Floats, factor: float) -> bool:
-    """Whether values (t,) go down instead of up, from their beginning and from zero."""
+def _has_wrong_sign(values: Floats, factor: float) -> bool:
+    """Whether values (t,) go down instead of up, from their beginning and from zero, by more than a factor."""
     low, high, first = float(values.min()), float(values.max()), float(np.median(values[:5]))
     return -low > factor * max(high, 0.0) and first - low > factor * (high - first)
 
 
-def _refuse_turned_coupon(run: Run, specimen: Specimen, where: str) -> None:
-    values = _measured(run, run.drive)
-    if specimen.kind != "shear" and _turned(values, 1.0):
+def _refuse_wrong_sign_of_coupon(run: Run, specimen: Specimen, where: str) -> None:
+    values = _measured_values(run, run.drive)
+    if specimen.kind != "shear" and _has_wrong_sign(values, 1.0):
         raise InputError(
             f"{where} {run.drive}: goes down to {values.min():.4g} and up to {values.max():.4g} only; in a "
             f"{specimen.kind} test displacement_mm and force_N both count positive, turn their signs"
@@ -147,16 +149,16 @@ def _refuse_off_zero(run: Run, where: str, height_mm: float) -> None:
             f"{where} displacement_mm: reaches {deepest:.4g} mm, the segment is {height_mm:.4g} mm high; displacement "
             "counts from the first touch, so its zero or its unit is off"
         )
-    there = _both(run)
-    _, noise = rest_of(drive)
+    there = _both_measured(run)
+    _, noise = rest_level(drive)
     if float(drive.min()) <= max(5.0 * noise, 0.05 * np.ptp(drive)) or there.sum() < 3:
         return
     displacement, force = drive[there], run.channels["force_N"][there]
-    low = displacement < displacement.min() + LOWEST * np.ptp(displacement)
+    low = displacement < displacement.min() + LOWEST_RANGE_SHARE * np.ptp(displacement)
     if low.sum() < 8 or np.ptp(displacement[low]) == 0.0:
         return
     slope, whole = (float(np.polyfit(displacement[at], force[at], 1)[0]) for at in (low, np.ones_like(low)))
-    if slope < FLAT * whole:
+    if slope < FLAT_SLOPE_SHARE * whole:
         raise InputError(
             f"{where} displacement_mm: is {displacement.min():.4g} mm where force_N has not begun to rise; it counts "
             "from the first touch, so its zero is off"

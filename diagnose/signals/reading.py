@@ -1,4 +1,4 @@
-"""Read the runs of a recording, and average over blocks where there are more samples than a diagnosis needs.
+"""The runs of a recording, read from their files and averaged where there are more samples than a diagnosis needs.
 
 To average is a linear filter, and it commutes with what is linear and constant in time: the answer to an averaged drive
 is the averaged answer, as far as force and charge are straight over a block of 4 ms.
@@ -15,15 +15,15 @@ from diagnose.noise.quantisation import quantisation_step
 from diagnose.signals.columns import read_columns, refuse_by_size
 from diagnose.signals.drive_checks import drive_suspicions, refuse_unlike_drive
 from diagnose.signals.phases import Segmentation
-from diagnose.signals.recording import Recording, Run, RunTable, Specimen, one_after_the_other
+from diagnose.signals.recording import Recording, Run, RunTable, Specimen, with_earlier_drives
 from diagnose.signals.run_checks import (
-    LARGEST_STRAIN,
+    LARGEST_COUPON_STRAIN,
     refuse_bad_columns,
     refuse_bad_time,
     refuse_untouched,
-    suspicions,
+    run_suspicions,
 )
-from diagnose.signals.saturation import saturated
+from diagnose.signals.saturation import saturation_mask
 from foundation.arrays import Bools, Floats, Ints
 from foundation.errors import InputError
 from solve.model import Readout
@@ -38,26 +38,26 @@ def read_recording(
     specimen: Specimen | None,
     height_mm: float = np.inf,
 ) -> Recording:
-    """All runs of a folder. InputError naming file, row and column; every size is checked before any file is read.
+    """Recording of all runs in a folder. Every size is checked before any file is read.
 
-    height_mm : of the segment, beyond which no dot goes in.
+    height_mm : of the segment, beyond which no dot goes in. InputError names file, row and column.
     """
     refuse_by_size(folder / run.file for run in runs)
     pairs = []
-    for table, label, readout in zip(runs, distinct([run.name for run in runs]), readouts, strict=True):
+    for table, label, readout in zip(runs, distinct_labels([run.name for run in runs]), readouts, strict=True):
         run, path = replace(read_run(folder, table, readout), label=label), folder / table.file
         refuse_unlike_drive(run, path, specimen, height_mm)
         if specimen is None:  # a coupon is held from the start
             refuse_untouched(run.drive, run.time_s, run.drive_values, path)
         pairs.append((run, path))
-    travel_mm = np.inf if specimen is None else LARGEST_STRAIN * specimen.gauge_mm
-    warnings = [sentence for run, path in pairs for sentence in suspicions(run, path, travel_mm)]
+    travel_mm = np.inf if specimen is None else LARGEST_COUPON_STRAIN * specimen.gauge_mm
+    warnings = [sentence for run, path in pairs for sentence in run_suspicions(run, path, travel_mm)]
     warnings += _copies(pairs)
     if specimen is None:
         warnings += [sentence for run, path in pairs for sentence in drive_suspicions(run, path)]
     new = [specimen is not None or number == 0 for number in range(len(runs))]
     told = [table.virgin if table.virgin is not None else usual for table, usual in zip(runs, new, strict=True)]
-    ordered = one_after_the_other(replace(run, virgin=virgin) for (run, _), virgin in zip(pairs, told, strict=True))
+    ordered = with_earlier_drives(replace(run, virgin=virgin) for (run, _), virgin in zip(pairs, told, strict=True))
     return Recording(tuple(ordered), specimen, tuple(warnings))
 
 
@@ -73,10 +73,10 @@ def _copies(pairs: Sequence[tuple[Run, Path]]) -> list[str]:
     return said
 
 
-def distinct(labels: Sequence[str]) -> list[str]:
-    """Labels that differ: repeats of a press may have the same one, and are numbered.
+def distinct_labels(labels: Sequence[str]) -> list[str]:
+    """Labels that differ from each other: repeats of a press may have the same one, and are numbered.
 
-    >>> distinct(["slow", "fast", "slow"])
+    >>> distinct_labels(["slow", "fast", "slow"])
     ['slow', 'fast', 'slow (2)']
     """
     found: list[str] = []
@@ -90,7 +90,7 @@ def distinct(labels: Sequence[str]) -> list[str]:
 
 
 def read_run(folder: Path, table: RunTable, readout: Readout | None) -> Run:
-    """One run. InputError."""
+    """One run of a folder, by its table in rig.toml. InputError names file, row and column."""
     path = folder / table.file
     columns = read_columns(path)
     refuse_bad_time(columns["time_s"], path)
@@ -99,7 +99,7 @@ def read_run(folder: Path, table: RunTable, readout: Readout | None) -> Run:
     channels = {name: values for name, values in columns.items() if name not in (*COVARIATES, "time_s")}
     driven = np.isfinite(channels[table.drive])
     valid = {name: np.isfinite(values) & driven for name, values in channels.items()}
-    channels[table.drive] = _bridged(columns["time_s"], channels[table.drive])
+    channels[table.drive] = _bridge_gaps(columns["time_s"], channels[table.drive])
     return Run(
         label=table.name,
         file=table.file,
@@ -107,7 +107,7 @@ def read_run(folder: Path, table: RunTable, readout: Readout | None) -> Run:
         drive=table.drive,
         channels=channels,
         valid=valid,
-        saturated={name: _limited(name, values, readout) for name, values in channels.items()},
+        saturated={name: _amplifier_limit_mask(name, values, readout) for name, values in channels.items()},
         covariates={name: columns[name] for name in COVARIATES if name in columns},
         dot_offset_mm=table.dot_offset_mm,
         temperature_C=table.temperature_C,
@@ -117,15 +117,15 @@ def read_run(folder: Path, table: RunTable, readout: Readout | None) -> Run:
     )
 
 
-def _limited(name: str, values: Floats, readout: Readout | None) -> Bools:
-    """Saturated samples of an amplifier; a motion or a force may well stand still at its largest."""
+def _amplifier_limit_mask(name: str, values: Floats, readout: Readout | None) -> Bools:
+    """Flags (t,) of saturated samples of an amplifier; a motion or a force may well stand still at its largest."""
     if not name.startswith("voltage"):
         return np.zeros(len(values), dtype=bool)
-    return saturated(values, readout.limit_V if readout is not None else None)
+    return saturation_mask(values, readout.limit_V if readout is not None else None)
 
 
-def _bridged(time_s: Floats, drive: Floats) -> Floats:
-    """The drive (t,) with straight lines across missing samples."""
+def _bridge_gaps(time_s: Floats, drive: Floats) -> Floats:
+    """Drive (t,) with straight lines across missing samples."""
     there = np.isfinite(drive)
     return np.interp(time_s, time_s[there], drive[there])
 
@@ -144,26 +144,29 @@ def _refuse_unknown_noise(table: RunTable, columns: Mapping[str, Floats], folder
             )
 
 
-ENOUGH = 15_000
+ENOUGH_SAMPLES = 15_000
 """Samples of a channel over all runs: as many as a diagnosis handles in a minute."""
-LEAST_Hz = 250.0
+LEAST_RATE_HZ = 250.0
 """No recording gets slower: mains and their second harmonic stay visible, and so does every press by hand."""
-ENOUGH_OF_COUPON, LEAST_IN_LOADING = 5_000, 50
+ENOUGH_COUPON_SAMPLES, LEAST_LOADING_SAMPLES = 5_000, 50
 """The same for a coupon, each sample of which is an equilibrium to solve; what stays is counted while it is loaded."""
 
 
-def thinned(recording: Recording) -> Recording:
-    """The recording with ENOUGH samples, if its rate allows; a warning says so."""
-    count, enough = sum(len(run.time_s) for run in recording.runs), ENOUGH
-    most = [int(1.0 / (run.step_s * LEAST_Hz) + 1e-6) for run in recording.runs]
+def thin_recording(recording: Recording) -> Recording:
+    """Recording averaged to about ENOUGH_SAMPLES, as far as its rate allows; a warning says so.
+
+    Of a coupon to ENOUGH_COUPON_SAMPLES.
+    """
+    count, enough = sum(len(run.time_s) for run in recording.runs), ENOUGH_SAMPLES
+    most = [int(1.0 / (run.step_s * LEAST_RATE_HZ) + 1e-6) for run in recording.runs]
     if recording.specimen is not None:
-        enough = ENOUGH_OF_COUPON
-        most = [_loading(found) // LEAST_IN_LOADING for found in recording.phases]
+        enough = ENOUGH_COUPON_SAMPLES
+        most = [_shortest_loading_samples(found) // LEAST_LOADING_SAMPLES for found in recording.phases]
     asked = ceil(count / enough)
     factors = [max(1, min(asked, largest)) for largest in most]
     if max(factors) == 1:
         return recording
-    runs = tuple(averaged(run, factor) for run, factor in zip(recording.runs, factors, strict=True))
+    runs = tuple(average_blocks(run, factor) for run, factor in zip(recording.runs, factors, strict=True))
     said = (
         f"{count:,} samples of a channel are more than needed: up to {max(factors)} in a row were averaged, and "
         f"nothing faster than {0.5 / max(run.step_s for run in runs):.3g} Hz was analysed."
@@ -171,13 +174,13 @@ def thinned(recording: Recording) -> Recording:
     return replace(recording, runs=runs, warnings=(*recording.warnings, said))
 
 
-def _loading(phases: Segmentation) -> int:
-    """Samples of the shortest loading."""
+def _shortest_loading_samples(phases: Segmentation) -> int:
+    """Number of samples of the shortest loading; 0 without a press."""
     return min((press.held - press.touch for press in phases.presses), default=0)
 
 
-def averaged(run: Run, factor: int) -> Run:
-    """Means over factor samples in a row within even sampling, gaps left out; shorter ends are dropped.
+def average_blocks(run: Run, factor: int) -> Run:
+    """Run of means over `factor` successive samples within even sampling, gaps left out; shorter ends are dropped.
 
     A block counts as missing where one of its samples is, and as saturated likewise.
     """
@@ -188,16 +191,16 @@ def averaged(run: Run, factor: int) -> Run:
     return replace(
         run,
         time_s=run.time_s[blocks].mean(axis=1),
-        channels={name: _means(values, blocks) for name, values in run.channels.items()},
-        valid={name: _all(there, blocks) for name, there in run.valid.items()},
-        saturated={name: ~_all(~at, blocks) for name, at in run.saturated.items()},
+        channels={name: _block_means(values, blocks) for name, values in run.channels.items()},
+        valid={name: _all_in_block(there, blocks) for name, there in run.valid.items()},
+        saturated={name: ~_all_in_block(~at, blocks) for name, at in run.saturated.items()},
         covariates={name: values[blocks].mean(axis=1) for name, values in run.covariates.items()},
         noise={name: sigma / np.sqrt(factor) for name, sigma in run.noise.items()},
     )
 
 
-def _means(values: Floats, blocks: Ints) -> Floats:
-    """On the steps of the converter, where it has any: they are part of the noise."""
+def _block_means(values: Floats, blocks: Ints) -> Floats:
+    """Means over blocks (b, factor) of samples, on the steps of the converter where it has any: they are noise too."""
     means, step = values[blocks].mean(axis=1), quantisation_step(values)
     if step is None:
         return np.asarray(means)
@@ -205,5 +208,5 @@ def _means(values: Floats, blocks: Ints) -> Floats:
     return np.asarray(zero + step * np.round((means - zero) / step))
 
 
-def _all(flags: Bools, blocks: Ints) -> Bools:
+def _all_in_block(flags: Bools, blocks: Ints) -> Bools:
     return np.asarray(flags[blocks].all(axis=1))

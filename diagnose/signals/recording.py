@@ -13,7 +13,7 @@ from pydantic import Field, field_validator
 from scipy.ndimage import median_filter
 
 from diagnose.signals.acceleration import acceleration_mm_per_s2, velocity_mm_per_s
-from diagnose.signals.phases import Segmentation, segmented
+from diagnose.signals.phases import Segmentation, find_phases
 from foundation.arrays import Bools, Floats
 from foundation.nearest_name import nearest_name_hint
 from geometry.parameters import Finite, Positive, Table
@@ -21,12 +21,12 @@ from solve.model import Readout
 from solve.reduced.recording import second_differences
 
 FORMAT = "softdot-recording/1"
-PARTS = ("effector", "medium1", "film", "medium2", "specimen")
+NUISANCE_PARTS = ("effector", "medium1", "film", "medium2", "specimen")
 ABSOLUTE = frozenset({"lag_s", "offset_V", "offset_N", "offset_mm"})
 NUISANCES = frozenset(
     ABSOLUTE
     | {"gain", "force_gain", "clock_ratio", "d31"}
-    | {f"{quantity}.{part}" for quantity in ("modulus", "thickness") for part in PARTS}
+    | {f"{quantity}.{part}" for quantity in ("modulus", "thickness") for part in NUISANCE_PARTS}
 )
 Drive = Literal["displacement_mm", "force_N"]
 
@@ -60,7 +60,7 @@ class RunTable(Table):
     @field_validator("file")
     @classmethod
     def _inside(cls, value: str) -> str:
-        """A recording is whole in its folder, and names no other file of the machine."""
+        """The name of the file, refused where it leads out of the folder of the recording."""
         parts = PurePath(value.replace("\\", "/")).parts
         if not parts or PurePath(value).is_absolute() or ".." in parts or ":" in parts[0]:
             raise ValueError("must be the name of a file in the folder of rig.toml or in a folder below it")
@@ -69,8 +69,8 @@ class RunTable(Table):
     @field_validator("nuisance", mode="before")
     @classmethod
     def _flat(cls, value: Any) -> Any:
-        """modulus.medium1 = 0.1 is a table in a table to TOML."""
-        flat = _flattened(value) if isinstance(value, Mapping) else value
+        """Nuisances by dotted name: modulus.medium1 = 0.1 is a table in a table to TOML."""
+        flat = _flatten(value) if isinstance(value, Mapping) else value
         for name in flat if isinstance(flat, Mapping) else ():
             if name not in NUISANCES:
                 raise ValueError(f"'{name}' is not a nuisance parameter; {nearest_name_hint(name, NUISANCES)}")
@@ -98,17 +98,17 @@ class Specimen(Table):
 
     @property
     def gauge_mm(self) -> float:
-        """Length by which a displacement is divided for the nominal strain."""
+        """Length in mm by which a displacement is divided for the nominal strain."""
         return self.length_mm if self.kind == "tension" else self.thickness_mm
 
     @property
     def area_mm2(self) -> float:
-        """Area by which a force is divided for the nominal stress."""
+        """Area in mm2 by which a force is divided for the nominal stress."""
         return self.width_mm * (self.thickness_mm if self.kind == "tension" else self.length_mm)
 
 
 class RigTables(Table):
-    """rig.toml without the configuration."""
+    """Tables of rig.toml other than those of the configuration."""
 
     format: Literal["softdot-recording/1"] = Field(description="format of this file")
     geometry: Literal["known", "unknown"] = Field(
@@ -125,48 +125,52 @@ class RigTables(Table):
         return runs
 
 
-def _flattened(table: Mapping[str, Any]) -> dict[str, Any]:
-    """{"modulus": {"medium1": 0.1}} -> {"modulus.medium1": 0.1}."""
+def _flatten(table: Mapping[str, Any]) -> dict[str, Any]:
+    """Nested tables as one with dotted names: {"modulus": {"medium1": 0.1}} -> {"modulus.medium1": 0.1}."""
     flat: dict[str, Any] = {}
     for name, value in table.items():
-        inner = _flattened(value) if isinstance(value, Mapping) else None
+        inner = _flatten(value) if isinstance(value, Mapping) else None
         flat |= {name: value} if inner is None else {f"{name}.{key}": item for key, item in inner.items()}
     return flat
 
 
-WINDOW = 9  # steps of the running median: a single late sample is a gap, five in a row are another rate
-GAP, OTHER_RATE = 1.5, 1.2  # ratios to the running median, and of the running median to the one before
+MEDIAN_WINDOW_STEPS = (
+    9  # of the running median of time steps: a single late sample is a gap, five in a row are another rate
+)
+GAP_RATIO, OTHER_RATE_RATIO = 1.5, 1.2  # ratios to the running median, and of the running median to the one before
 
 
 def even_pieces(time_s: Floats) -> tuple[slice, ...]:
     """Slices of a time axis (t,), together all of it, each without a gap and at one rate."""
     step = np.diff(time_s)
-    usual = median_filter(step, WINDOW, mode="nearest")
-    other_rate = np.abs(np.diff(np.log(usual))) > np.log(OTHER_RATE)
-    edges = {0, *(np.flatnonzero(step > GAP * usual) + 1), *(np.flatnonzero(other_rate) + 1), len(time_s)}
+    usual = median_filter(step, MEDIAN_WINDOW_STEPS, mode="nearest")
+    other_rate = np.abs(np.diff(np.log(usual))) > np.log(OTHER_RATE_RATIO)
+    edges = {0, *(np.flatnonzero(step > GAP_RATIO * usual) + 1), *(np.flatnonzero(other_rate) + 1), len(time_s)}
     return tuple(slice(int(a), int(b)) for a, b in pairwise(sorted(edges)))
 
 
-def gaps(time_s: Floats) -> list[int]:
-    """Samples before which the time jumps."""
+def samples_after_gaps(time_s: Floats) -> list[int]:
+    """Numbers of the samples before which the time (t,) jumps."""
     step = np.diff(time_s)
-    return [int(n) + 1 for n in np.flatnonzero(step > GAP * median_filter(step, WINDOW, mode="nearest"))]
+    return [
+        int(n) + 1 for n in np.flatnonzero(step > GAP_RATIO * median_filter(step, MEDIAN_WINDOW_STEPS, mode="nearest"))
+    ]
 
 
-def rates_Hz(time_s: Floats) -> list[float]:
-    """The sampling rates that occur, one after the other, without equal neighbours; short pieces do not count."""
+def sampling_rates_Hz(time_s: Floats) -> list[float]:
+    """Sampling rates of a time axis (t,), one after the other, without equal neighbours; short pieces do not count."""
     found: list[float] = []
     for piece in even_pieces(time_s):
-        if piece.stop - piece.start <= WINDOW:
+        if piece.stop - piece.start <= MEDIAN_WINDOW_STEPS:
             continue
         rate = 1.0 / float(np.median(np.diff(time_s[piece])))
-        if not found or abs(np.log(rate / found[-1])) > np.log(OTHER_RATE):
+        if not found or abs(np.log(rate / found[-1])) > np.log(OTHER_RATE_RATIO):
             found.append(rate)
     return found
 
 
-def is_even(time_s: Floats) -> bool:
-    """Whether steps differ from their median by less than a tenth, as noise models in discrete time need."""
+def is_evenly_sampled(time_s: Floats) -> bool:
+    """Whether steps of time (t,) differ from their median by less than a tenth; noise models need that."""
     step = np.diff(time_s)
     return bool(len(step) > 0 and np.abs(step / np.median(step) - 1.0).max() < 0.1)
 
@@ -210,8 +214,8 @@ class Run:
     virgin: bool = True
     largest_before: Mapping[Drive, float] = field(default_factory=dict)
 
-    def along(self, drive: Floats) -> "Run":
-        """The same run along another drive (t,); what was added to the one that was measured has no noise."""
+    def with_drive(self, drive: Floats) -> "Run":
+        """This run under another drive (t,); what is added to the measured one has no noise."""
         channels, more = {**self.channels, self.drive: drive}, drive - self.drive_values
         if self.drive != "displacement_mm":
             return replace(self, channels=channels, moving=None, accelerated=None)
@@ -221,26 +225,26 @@ class Run:
 
     @property
     def drive_values(self) -> Floats:
-        """The channel that drives the simulation, (t,)."""
+        """Samples (t,) of the channel that drives the simulation."""
         return self.channels[self.drive]
 
     @property
     def answers(self) -> tuple[str, ...]:
-        """The channels that a model has to explain."""
+        """Names of the channels that a model has to explain."""
         return tuple(name for name in self.channels if name != self.drive)
 
     @property
     def voltages(self) -> tuple[str, ...]:
-        """The voltage channels in the order of the electrodes."""
-        return tuple(sorted((name for name in self.channels if name.startswith("voltage")), key=_number))
+        """Names of the voltage channels in the order of the electrodes."""
+        return tuple(sorted((name for name in self.channels if name.startswith("voltage")), key=_channel_number))
 
     def usable(self, channel: str) -> Bools:
-        """Samples (t,) that a fit may use: measured and not at the limit."""
+        """Flags (t,) of samples that a fit may use: measured and not at the limit."""
         return self.valid[channel] & ~self.saturated[channel]
 
     @cached_property
     def pieces(self) -> tuple[slice, ...]:
-        """Stretches of even sampling: a gap in time or another rate begins a new one."""
+        """Slices of even sampling: a gap in time or another rate begins a new one."""
         return even_pieces(self.time_s)
 
     @cached_property
@@ -250,19 +254,19 @@ class Run:
 
     @cached_property
     def acceleration_mm_per_s2(self) -> Floats:
-        """Of the drive, (t,), where it is a displacement."""
+        """Acceleration (t,) of the drive in mm/s2, where it is a displacement."""
         if self.accelerated is not None:
             return self.accelerated
         return acceleration_mm_per_s2(self.time_s, self.drive_values)
 
     @cached_property
     def step_s(self) -> float:
-        """Median step of time."""
+        """Median step of time in s."""
         return float(np.median(np.diff(self.time_s)))
 
 
-def one_after_the_other(runs: Iterable[Run]) -> Iterator[Run]:
-    """Each run with the largest drives before it."""
+def with_earlier_drives(runs: Iterable[Run]) -> Iterator[Run]:
+    """Runs, each with the largest drives of the runs before it on the same specimen at the same place."""
     reached: dict[tuple[float, float], dict[Drive, float]] = {}
     for run in runs:
         reached = {} if run.virgin else reached
@@ -274,7 +278,7 @@ def one_after_the_other(runs: Iterable[Run]) -> Iterator[Run]:
 
 @dataclass(frozen=True)
 class Recording:
-    """All runs of one rig. specimen : the coupon, where it is a coupon test. warnings : one sentence each."""
+    """All runs of one rig. specimen : the coupon of a coupon test, else None. warnings : one sentence each."""
 
     runs: tuple[Run, ...]
     specimen: Specimen | None = None
@@ -282,23 +286,23 @@ class Recording:
 
     @cached_property
     def phases(self) -> tuple[Segmentation, ...]:
-        """Presses and phases of each run. Only the dot's displacement counts from the touch."""
+        """Presses and phases of each run. Only the displacement of a dot counts from the touch."""
         return tuple(
-            segmented(run.time_s, run.drive_values, self.specimen is None and run.drive == "displacement_mm")
+            find_phases(run.time_s, run.drive_values, self.specimen is None and run.drive == "displacement_mm")
             for run in self.runs
         )
 
-    def after_all(self, run: Run) -> Run:
-        """A run that is made next: of a coupon on a new one."""
+    def as_next_run(self, run: Run) -> Run:
+        """A run as it would be made next, after all others; that of a coupon on a new one."""
         new = replace(run, virgin=self.specimen is not None)
-        return list(one_after_the_other([*self.runs, new]))[-1]
+        return list(with_earlier_drives([*self.runs, new]))[-1]
 
     def run(self, label: str) -> Run:
-        """The run with this label. KeyError."""
+        """The run with this label. KeyError where there is none."""
         return {run.label: run for run in self.runs}[label]
 
 
-def _number(name: str) -> int:
-    """voltage_3_V -> 3."""
+def _channel_number(name: str) -> int:
+    """Number in the name of a channel, 0 without one: voltage_3_V -> 3."""
     found = re.search(r"\d+", name)
     return int(found[0]) if found else 0

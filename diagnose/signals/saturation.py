@@ -4,12 +4,12 @@ import numpy as np
 
 from foundation.arrays import Bools, Floats, Ints
 
-SHORTEST = 4  # equal samples in a row
-LONGER = 3  # times the longest such row elsewhere
+SHORTEST_PLATEAU_SAMPLES = 4  # equal samples in a row
+PLATEAU_LENGTH_RATIO = 3  # times the longest such row elsewhere
 
 
-def saturated(values: Floats, limit: float | None = None) -> Bools:
-    """Samples (t,) that stay at the largest or smallest value, or at a limit that is known, as True.
+def saturation_mask(values: Floats, limit: float | None = None) -> Bools:
+    """Flags (t,) of samples that stay at the largest or smallest value, or at a known limit.
 
     Noise makes neighbours differ, a limit makes them equal. A converter coarser than the noise makes them equal too,
     but at rest as well: a row of equal samples counts only when it is far longer than those elsewhere.
@@ -20,15 +20,15 @@ def saturated(values: Floats, limit: float | None = None) -> Bools:
     finite = values[np.isfinite(values)]
     if len(finite) == 0:
         return at_limit
-    first, length, level = _rows(values)
+    first, length, level = _plateaus(values)
     extreme = ((level == finite.max()) | (level == finite.min())) & (level != finite[0])
-    needed = max(SHORTEST, LONGER * int(length[~extreme].max()))
+    needed = max(SHORTEST_PLATEAU_SAMPLES, PLATEAU_LENGTH_RATIO * int(length[~extreme].max()))
     for n in np.flatnonzero(extreme & (length >= needed)):
         at_limit[first[n] : first[n] + length[n]] = True
     return at_limit
 
 
-def _rows(values: Floats) -> tuple[Ints, Ints, Floats]:
+def _plateaus(values: Floats) -> tuple[Ints, Ints, Floats]:
     """First sample, length and value of each row of equal samples."""
     edges = np.concatenate([[True], values[1:] != values[:-1]])
     first = np.flatnonzero(edges)

@@ -4,7 +4,7 @@ import re
 from argparse import Namespace
 from pathlib import Path
 
-from diagnose.signals.columns import NAMES, NUMBERED
+from diagnose.signals.columns import COLUMN_NAMES, NUMBERED_VOLTAGE
 from foundation.errors import InputError
 from foundation.files import read_text
 from softdot.config.rig import load_rig
@@ -45,8 +45,10 @@ def _named(texts: list[str]) -> dict[str, str]:
     found: dict[str, str] = {}
     for text in texts:
         channel, _, column = (part.strip() for part in text.rpartition("="))
-        if not channel or (column not in NAMES[1:] and not NUMBERED.fullmatch(column)):
-            raise InputError(f"--column '{text}': must be CHANNEL=COLUMN with a column of {', '.join(NAMES[1:])}")
+        if not channel or (column not in COLUMN_NAMES[1:] and not NUMBERED_VOLTAGE.fullmatch(column)):
+            raise InputError(
+                f"--column '{text}': must be CHANNEL=COLUMN with a column of {', '.join(COLUMN_NAMES[1:])}"
+            )
         if channel in found or column in found.values():
             raise InputError(f"--column '{text}': this channel or column is named twice")
         found[channel] = column

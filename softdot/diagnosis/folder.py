@@ -14,7 +14,7 @@ from diagnose.forward import Engine
 from diagnose.next_press.choose import MOST_PRESSES, NextPress, next_presses
 from diagnose.noise.estimate import noise_models
 from diagnose.other_units import other_units
-from diagnose.signals.reading import thinned
+from diagnose.signals.reading import thin_recording
 from diagnose.signals.recording import Recording
 from diagnose.signals.run_checks import refuse_slow_sampling
 from diagnose.verdict.content import FORMAT, verdict, waveform
@@ -81,7 +81,7 @@ def run_diagnosis(
     check_cache_folder()
     rig = load_rig(folder)
     _refuse_what_sampling_misses(rig)
-    rig = replace(rig, recording=thinned(rig.recording))
+    rig = replace(rig, recording=thin_recording(rig.recording))
     held_out(rig.recording, options.hold_out)
     noise_models(rig.recording)  # refuses a channel without known noise before any press
     with executor_for(scheduler) as executor, staged_folder(out, DIAGNOSIS) as staged:

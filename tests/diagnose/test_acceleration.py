@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from diagnose.signals.acceleration import acceleration_mm_per_s2, noise_mm
+from diagnose.signals.acceleration import acceleration_mm_per_s2, path_noise_mm
 from diagnose.signals.recording import Run
 from foundation.arrays import Floats
 from tests.cases import for_each
@@ -58,7 +58,7 @@ def test_a_crosshead_that_starts_at_once_passes_on_its_pulse() -> None:
 def test_the_noise_of_a_moving_column_is_told_without_a_rest(noise: float) -> None:
     path = quintic(TIME)[0][(TIME > 1.0) & (TIME < 2.3)]
     measured = path + np.random.default_rng(7).normal(0.0, noise, len(path))
-    assert noise_mm(measured) == pytest.approx(noise, rel=0.15)
+    assert path_noise_mm(measured) == pytest.approx(noise, rel=0.15)
 
 
 def test_what_is_added_to_a_measured_path_has_no_noise() -> None:
@@ -66,6 +66,6 @@ def test_what_is_added_to_a_measured_path_has_no_noise() -> None:
     measured = path + np.random.default_rng(3).normal(0.0, 0.2e-3, len(TIME))
     run = Run("a", "a.csv", TIME, "displacement_mm", {"displacement_mm": measured}, {}, {})
     rate = 2.0 * np.pi * 5.0
-    other = run.along(measured + 1e-3 * np.sin(rate * TIME))
+    other = run.with_drive(measured + 1e-3 * np.sin(rate * TIME))
     added = other.acceleration_mm_per_s2 - run.acceleration_mm_per_s2
     np.testing.assert_allclose(added[1:-1], -1e-3 * rate**2 * np.sin(rate * TIME)[1:-1], atol=1e-3 * rate**2 * 1e-3)

@@ -174,7 +174,7 @@ def test_a_file_of_ten_gigabytes_is_refused_unread(tmp_path):
 
 
 def test_many_files_are_counted_together(tmp_path, monkeypatch):
-    monkeypatch.setattr(columns, "LARGEST_MB", 1.5e-6 * len(csv_text(samples())))
+    monkeypatch.setattr(columns, "LARGEST_FILES_MB", 1.5e-6 * len(csv_text(samples())))
     rig = HEAD + SEGMENT + RUN + '[[runs]]\nfile = "b.csv"\n'
     folder = write_rig(tmp_path / "rig", rig, press=samples(), b=samples())
     assert f"recording '{folder / 'b.csv'}'" in refusal(folder)

@@ -8,7 +8,7 @@ import pytest
 from diagnose.engines.coupon.engine import coupon_engine
 from diagnose.engines.proportional.engine import proportional_engine
 from diagnose.forward import Setting
-from diagnose.signals.recording import Recording, Run, one_after_the_other
+from diagnose.signals.recording import Recording, Run, with_earlier_drives
 from softdot.config.rig import load_rig
 from tests.cases import for_each
 from tests.diagnose.coupon.coupons import RUBBER, silent, specimen
@@ -38,7 +38,7 @@ def whole_and_parts(drive, answer, first, second, coupon=None):
     """A recording of one long run, and one of its halves, the second after the first."""
     halves = pull(first), pull(second)
     one, other = (run(drive, half, answer) for half in halves)
-    parts = one_after_the_other([one, replace(other, virgin=False)])
+    parts = with_earlier_drives([one, replace(other, virgin=False)])
     return Recording((run(drive, np.concatenate(halves), answer),), coupon), Recording(tuple(parts), coupon)
 
 
@@ -77,7 +77,7 @@ def test_a_sensor_of_unknown_geometry_that_was_pressed_before_is_softer():
 def test_a_segment_that_was_pressed_deeper_before_is_softer():
     """As the 3D model that was pressed deeper first."""
     deep, shallow = (rigs.run(values=rigs.press(TIME, depth, **QUICK), label=f"{depth}") for depth in (0.25, 0.18))
-    of = rigs.engine(*one_after_the_other([deep, replace(shallow, virgin=False)]))
+    of = rigs.engine(*with_earlier_drives([deep, replace(shallow, virgin=False)]))
     (setting,) = softened(of)
     of.prepare([setting.candidate], silent)
     told, true = of.predict(1, [setting]), of.solve(1, [setting.candidate.switched_on(setting.values)], silent)
@@ -110,10 +110,10 @@ def test_a_run_at_another_place_presses_what_is_new(tmp_path):
     folder = write_rig(tmp_path / "rig", text, a=csv_text(deep), b=samples(), c=samples())
     recording = load_rig(folder).recording
     assert [run.largest_before for run in recording.runs] == [{}, {}, {"displacement_mm": pytest.approx(0.4)}]
-    new = recording.after_all(recording.runs[1])
+    new = recording.as_next_run(recording.runs[1])
     assert new.largest_before == {"displacement_mm": pytest.approx(0.3)}
 
 
 def test_the_next_press_of_a_coupon_is_made_on_a_new_one():
     recording = whole_and_parts("displacement_mm", "force_N", 5.0, 3.0, specimen())[1]
-    assert recording.after_all(recording.runs[1]).largest_before == {}
+    assert recording.as_next_run(recording.runs[1]).largest_before == {}

@@ -5,7 +5,7 @@ import pytest
 
 from diagnose.noise.estimate import noise_models
 from diagnose.noise.rest import rest_mask
-from diagnose.signals.phases import segmented
+from diagnose.signals.phases import find_phases
 from foundation.errors import InputError
 from softdot.config.rig import load_rig
 from tests.diagnose.rigs import COUPON, HEAD, RUN, SEGMENT, samples, write_rig
@@ -37,7 +37,7 @@ def test_the_answer_to_a_press_is_no_noise(tmp_path):
 
 def test_rest_begins_one_press_length_behind_a_press(tmp_path):
     (run,) = load_rig(write_rig(tmp_path / "rig", press=samples(4000, 1000.0))).recording.runs
-    rest = rest_mask(run, segmented(run.time_s, run.drive_values))
+    rest = rest_mask(run, find_phases(run.time_s, run.drive_values))
     assert run.time_s[~rest][[0, -1]] == pytest.approx([0.9, 2.8], abs=0.02)
 
 

@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from diagnose.signals.acceleration import acceleration_mm_per_s2, noise_mm
+from diagnose.signals.acceleration import acceleration_mm_per_s2, path_noise_mm
 from diagnose.signals.align import lag_between
-from diagnose.signals.phases import rest_of, segmented
-from diagnose.signals.recording import even_pieces, gaps, is_even, rates_Hz
-from diagnose.signals.saturation import saturated
+from diagnose.signals.phases import find_phases, rest_level
+from diagnose.signals.recording import even_pieces, is_evenly_sampled, samples_after_gaps, sampling_rates_Hz
+from diagnose.signals.saturation import saturation_mask
 from tests.diagnose.rigs import trapezoid
 
 SEVERAL = settings(max_examples=15, deadline=None)
@@ -32,10 +32,10 @@ def drives(draw):
 @SEVERAL
 @given(drives(), FACTORS, FACTORS, st.booleans())
 def test_phases_do_not_depend_on_units(drive, length, time, from_touch):
-    one, other = segmented(TIME_S, drive, from_touch), segmented(time * TIME_S, length * drive, from_touch)
+    one, other = find_phases(TIME_S, drive, from_touch), find_phases(time * TIME_S, length * drive, from_touch)
     assert one.presses == other.presses
     assert len(one.presses) in (1, 2)
-    assert rest_of(length * drive) == tuple(length * part for part in rest_of(drive))
+    assert rest_level(length * drive) == tuple(length * part for part in rest_level(drive))
 
 
 @SEVERAL
@@ -43,7 +43,7 @@ def test_phases_do_not_depend_on_units(drive, length, time, from_touch):
 def test_phases_of_a_travel_do_not_depend_on_its_zero(drive, shift):
     """On a grid on which a shift rounds nothing."""
     travel = np.round(drive * 2**20) / 2**20
-    assert segmented(TIME_S, travel, False).presses == segmented(TIME_S, travel + shift, False).presses
+    assert find_phases(TIME_S, travel, False).presses == find_phases(TIME_S, travel + shift, False).presses
 
 
 @SEVERAL
@@ -75,7 +75,7 @@ def test_acceleration_has_the_units_of_its_path(length, time, seed):
     scaled = acceleration_mm_per_s2(time * TIME_S[:400], length * path)
     size = np.abs(found).max()
     np.testing.assert_allclose(scaled * time**2 / length, found, rtol=0, atol=1e-6 * size)
-    assert noise_mm(length * path) == pytest.approx(1e-4 * length, rel=0.3)
+    assert path_noise_mm(length * path) == pytest.approx(1e-4 * length, rel=0.3)
 
 
 @SEVERAL
@@ -83,9 +83,9 @@ def test_acceleration_has_the_units_of_its_path(length, time, seed):
 def test_pieces_of_even_sampling_do_not_depend_on_the_unit_of_time(steps, unit):
     time = np.concatenate([[0.0], np.cumsum(np.repeat(steps, 3))])
     assert even_pieces(time) == even_pieces(unit * time)
-    assert gaps(time) == gaps(unit * time)
-    assert rates_Hz(unit * time) == [rate / unit for rate in rates_Hz(time)]
-    assert is_even(time) == is_even(unit * time) == (len(set(steps)) == 1)
+    assert samples_after_gaps(time) == samples_after_gaps(unit * time)
+    assert sampling_rates_Hz(unit * time) == [rate / unit for rate in sampling_rates_Hz(time)]
+    assert is_evenly_sampled(time) == is_evenly_sampled(unit * time) == (len(set(steps)) == 1)
 
 
 @SEVERAL
@@ -95,6 +95,6 @@ def test_samples_at_a_limit_are_found_in_any_unit_and_sign(count, unit, sign, se
     top = np.abs(values).max() + 0.5
     values[100 : 100 + count] = top
     expected = np.flatnonzero(values == top)
-    assert np.flatnonzero(saturated(sign * unit * values)).tolist() == expected.tolist()
-    assert np.flatnonzero(saturated(sign * unit * values, unit * top)).tolist() == expected.tolist()
-    assert saturated(sign * unit * values[:100]).sum() == 0
+    assert np.flatnonzero(saturation_mask(sign * unit * values)).tolist() == expected.tolist()
+    assert np.flatnonzero(saturation_mask(sign * unit * values, unit * top)).tolist() == expected.tolist()
+    assert saturation_mask(sign * unit * values[:100]).sum() == 0

@@ -16,7 +16,7 @@ from diagnose.engines.coupon.tested_layer import one_layer, switched, with_facto
 from diagnose.engines.proportional.charge import Loading, film_charge, other_charge, voltage
 from diagnose.engines.proportional.medium import MEDIUM
 from diagnose.forward import Candidate, Coordinate, Setting, Signals, SolvedOutright
-from diagnose.signals.phases import Segmentation, rest_of, segmented
+from diagnose.signals.phases import Segmentation, find_phases, rest_level
 from diagnose.signals.recording import Recording, Run
 from diagnose.vocabulary.base import candidates_of_unknown_geometry
 from diagnose.vocabulary.scales import growing
@@ -81,7 +81,7 @@ class ProportionalEngine(SolvedOutright):
 
     def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
         """Every answer of a run that was not made, without hum."""
-        phases = segmented(run.time_s, run.drive_values, from_touch=False)
+        phases = find_phases(run.time_s, run.drive_values, from_touch=False)
         return self._answer(run, _loading(run, phases, self.largest_N), settings)
 
     def _answer(self, run: Run, loading: Loading, settings: Sequence[Setting]) -> Signals:
@@ -169,12 +169,12 @@ def _refuse_unfit(run: Run, first: Run) -> None:
 
 def _above_rest(run: Run) -> float:
     """Largest distance of the force from its rest."""
-    return float(np.abs(run.drive_values - rest_of(run.drive_values)[0]).max())
+    return float(np.abs(run.drive_values - rest_level(run.drive_values)[0]).max())
 
 
 def _loading(run: Run, phases: Segmentation, largest_N: float) -> Loading:
     """Force from its rest, over the largest of all runs."""
-    level = rest_of(run.drive_values)[0]
+    level = rest_level(run.drive_values)[0]
     before = max(run.largest_before.get(run.drive, level) - level, 0.0)
     touch_s = float(run.time_s[phases.presses[0].touch])
     return Loading(run.time_s, (run.drive_values - level) / largest_N, touch_s, before / largest_N)

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from diagnose.inference.diagnose import diagnose
-from diagnose.signals.reading import thinned
+from diagnose.signals.reading import thin_recording
 from softdot.config.rig import load_rig
 from softdot.diagnosis.engine import engine_for
 from tests.cases import for_each
@@ -36,7 +36,7 @@ def test_a_tape_relaxes(share_of_noise, tmp_path):
     """An expert's quasi-linear model of two elastic terms, fitted to the same runs, leaves 2.54 % of the others."""
     converted("vhb-relaxation", tmp_path / "out")
     rig = load_rig(next((tmp_path / "out").rglob("rig.toml")).parent)
-    recording = thinned(rig.recording)
+    recording = thin_recording(rig.recording)
     runs = [replace(run, noise={name: share_of_noise * s for name, s in run.noise.items()}) for run in recording.runs]
     recording = replace(recording, runs=tuple(runs))
     found = diagnose(recording, engine_for(replace(rig, recording=recording), silent), 0, silent)
@@ -67,7 +67,7 @@ def test_forces_of_other_pulls_and_backwards_name_nothing(data, name, tmp_path):
     converted(data, tmp_path / "out")
     for rig_file in sorted((tmp_path / "out").rglob("rig.toml")):
         rig = load_rig(rig_file.parent)
-        rig = replace(rig, recording=thinned(control(name)(rig.recording)))
+        rig = replace(rig, recording=thin_recording(control(name)(rig.recording)))
         found = diagnose(rig.recording, engine_for(rig, silent), 0, silent)
         assert found.mismatch
         assert found.best is None, rig_file.parent.name

@@ -8,7 +8,7 @@ import pytest
 from diagnose.fit.samples import Samples
 from diagnose.fit.signal_discrepancy import SignalDiscrepancy, conditions, in_plain_units
 from diagnose.noise.estimate import noise_models
-from diagnose.signals.reading import averaged
+from diagnose.signals.reading import average_blocks
 from diagnose.signals.recording import Recording
 from tests.cases import for_each
 from tests.diagnose.inference.toy import Sensor, small
@@ -37,7 +37,7 @@ def off_by(samples, share):
 @for_each("factor", [1, 2])
 def test_an_error_of_three_per_cent_has_the_size_of_three_per_cent(factor):
     recording = small(3, Sensor(), runs=4, noise=1e-4)
-    recording = Recording(tuple(averaged(run, factor) for run in recording.runs))
+    recording = Recording(tuple(average_blocks(run, factor) for run in recording.runs))
     samples = samples_of(recording)
     sizes = SignalDiscrepancy(samples).sizes(off_by(samples, OFF))
     assert sizes == pytest.approx([OFF, OFF], rel=0.1)

@@ -12,7 +12,7 @@ from diagnose.next_press.parting import PressJudge
 from diagnose.next_press.press_shape import Shape, recorded_shape
 from diagnose.next_press.proposals import base_setup, repeats
 from diagnose.next_press.variations import variations
-from diagnose.signals.phases import segmented
+from diagnose.signals.phases import find_phases
 from diagnose.signals.recording import Recording
 from diagnose.statistics.nuisance_projection import Marginal
 from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording, toy_run
@@ -201,7 +201,7 @@ def test_a_recorded_press_is_read_as_it_was_set():
 
 def test_the_drive_of_a_shape_is_that_shape():
     time, drive = Shape(level=-0.1, deep=0.2, rise_s=0.2, hold_s=0.4, fall_s=0.1, cycles=2).sampled(0.001)
-    presses = segmented(time, drive).presses
+    presses = find_phases(time, drive).presses
     assert len(presses) == 2
     assert drive.max() == pytest.approx(0.2)
     for press in presses:
