@@ -73,7 +73,7 @@ class Candidate:
         found = {**self.parameters(values), **self.derived(values)}
         return all(found[name] <= most for name, most in self.everyday.items())
 
-    def switched_on(self, values: Sequence[float]) -> Mechanism:
+    def as_mechanism(self, values: Sequence[float]) -> Mechanism:
         """The mechanism as a configuration has it. ValueError for values beyond its bounds."""
         return Mechanism(name=self.mechanism, component=self.component, parameters=self.parameters(values))
 

@@ -119,7 +119,7 @@ def _resimulated(
 
 def switched_on(setting: Setting) -> Mechanism:
     """The mechanism of a setting as a configuration has it."""
-    return setting.candidate.switched_on(setting.values)
+    return setting.candidate.as_mechanism(setting.values)
 
 
 def relative_error(values: Floats, reference: Floats) -> float:

@@ -80,7 +80,7 @@ def test_a_segment_that_was_pressed_deeper_before_is_softer():
     of = rigs.engine(*with_earlier_drives([deep, replace(shallow, virgin=False)]))
     (setting,) = softened(of)
     of.prepare([setting.candidate], silent)
-    told, true = of.predict(1, [setting]), of.solve(1, [setting.candidate.switched_on(setting.values)], silent)
+    told, true = of.predict(1, [setting]), of.solve(1, [setting.candidate.as_mechanism(setting.values)], silent)
     virgin = of.imagine(shallow, [setting])
     for name, signal in true.items():
         peak = np.abs(signal).max()

@@ -343,7 +343,7 @@ def test_a_diagnosis_looks_for_both():
     model = configured()
     found = {one.name: one for one in vocabulary.candidates_of_segment(scene_of(model))}
     guide, foundation = found["stribeck-guide", "rig"], found["elastic-foundation", "bond-base"]
-    rubs = guide.switched_on((1.0, 2.0)).values()
+    rubs = guide.as_mechanism((1.0, 2.0)).values()
     on = guided(model, "rig", rubs).physics
     time = np.linspace(0.0, 1.0, 201)
     more = solid().respond(time, 0.4 * time, on).force_N - solid().respond(time, 0.4 * time).force_N

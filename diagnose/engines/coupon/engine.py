@@ -6,16 +6,16 @@ from typing import Self
 
 import numpy as np
 
-from diagnose.engines.coupon.kinematics import kinematics_of
+from diagnose.engines.coupon.kinematics import coupon_kinematics
 from diagnose.engines.coupon.point import MaterialPoint, youngs_modulus_MPa
 from diagnose.engines.coupon.relaxation import NO_SERIES
 from diagnose.engines.coupon.tested_layer import (
     LAYER,
     SPECIMEN,
     PartOfLayer,
-    drive_error,
-    one_layer,
-    switched,
+    active_mechanisms,
+    drive_nuisance,
+    layer_model,
     with_factors_last,
 )
 from diagnose.forward import Candidate, Setting, Signals, SolvedOutright
@@ -36,8 +36,8 @@ from solve.physics import laws_of
 from solve.reduced.rig import compliance_mm_per_N
 from solve.solution.errors import NoEquilibriumError
 
-ACCURACY = 1e-3  # of a drive that is taken as straight between its samples
-FACTORS = {f"modulus.{SPECIMEN}": "modulus_factor", f"thickness.{SPECIMEN}": "thickness_factor"}
+DRIVE_ACCURACY = 1e-3  # of a drive that is taken as straight between its samples
+FACTOR_OF_NUISANCE = {f"modulus.{SPECIMEN}": "modulus_factor", f"thickness.{SPECIMEN}": "thickness_factor"}
 DRIVE_ERRORS: Mapping[str, Drive] = {"offset_mm": "displacement_mm", "offset_N": "force_N", "force_gain": "force_N"}
 Starts = dict[tuple[str, int], Floats]
 """Label and length of a run -> unknowns (t, m) of its last answer."""
@@ -45,10 +45,10 @@ Starts = dict[tuple[str, int], Floats]
 
 @dataclass(frozen=True)
 class CouponEngine(SolvedOutright):
-    """One material point in the place of a coupon that deforms uniformly; the 3D elements would find the same.
+    """Forward model of a coupon that deforms uniformly, one material point; the 3D elements would find the same.
 
-    material : as rig.toml states it. Nothing has to be prepared, and solve is predict.
-    last : from which the next answer starts, as fits move in small steps; None to start each at small strains, so that
+    material : as rig.toml states it. Nothing has to be prepared, and solve is predict. last : unknowns of the last
+    answers, from which the next ones start, as fits move in small steps; None to start each at small strains, so that
     it depends on nothing but its arguments.
     """
 
@@ -57,43 +57,45 @@ class CouponEngine(SolvedOutright):
     material: Material
     candidates: tuple[Candidate, ...]
     name: str = "material point"
-    accuracy: Mapping[str, float] = field(default_factory=lambda: {"force_N": ACCURACY, "displacement_mm": ACCURACY})
+    accuracy: Mapping[str, float] = field(
+        default_factory=lambda: {"force_N": DRIVE_ACCURACY, "displacement_mm": DRIVE_ACCURACY}
+    )
     free_nuisances: tuple[Candidate, ...] = ()
     shortfalls: tuple[str, ...] = ()
     last: Starts | None = field(default=None, repr=False, compare=False)
 
     def nuisance(self, name: str) -> Candidate | None:
-        """Relative error of modulus.specimen or thickness.specimen, or an error of the column that drives."""
-        if name in FACTORS:
-            return relative_error(PartOfLayer, name, FACTORS[name])
-        return drive_error(name) if name in DRIVE_ERRORS else None
+        """Candidate of a relative error of modulus.specimen or thickness.specimen, or of an error of the drive; else None."""
+        if name in FACTOR_OF_NUISANCE:
+            return relative_error(PartOfLayer, name, FACTOR_OF_NUISANCE[name])
+        return drive_nuisance(name) if name in DRIVE_ERRORS else None
 
     def with_candidates(self, candidates: tuple[Candidate, ...]) -> Self:
-        """The engine with fewer candidates."""
+        """This engine with fewer candidates."""
         return replace(self, candidates=candidates)
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
-        """Force or displacement of a run. ValueError beyond the bounds of a value, or where a law turns over."""
+        """Force or displacement (t,) of a run. ValueError beyond the bounds of a value, or where a law turns over."""
         return self.imagine(self.recording.runs[run], settings)
 
     def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
-        """Every answer of a run that was not made."""
+        """Every answer of a run that was not made. ValueError as predict."""
         of_drive = {s.candidate.mechanism: s.values[0] for s in settings if s.candidate.component == "drive"}
         of_coupon = [s for s in settings if s.candidate.component != "drive"]
         try:
-            return self._answer(run, switched(of_coupon), of_drive)
+            return self._answers(run, active_mechanisms(of_coupon), of_drive)
         except NoEquilibriumError as error:
             raise ValueError(str(error)) from None
 
     def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
         """Every answer of a run with these mechanisms, which act on medium 1. NoEquilibriumError."""
-        return self._answer(self.recording.runs[run], mechanisms, {})
+        return self._answers(self.recording.runs[run], mechanisms, {})
 
     def model(self, mechanisms: Sequence[Mechanism]) -> Model:
-        """A segment whose medium 1 is the coupon with these mechanisms."""
-        return with_factors_last(one_layer(self.material, self.specimen.thickness_mm), mechanisms)
+        """Model of a segment whose medium 1 is the coupon with these mechanisms."""
+        return with_factors_last(layer_model(self.material, self.specimen.thickness_mm), mechanisms)
 
-    def _answer(self, run: Run, mechanisms: Sequence[Mechanism], of_drive: Mapping[str, float]) -> Signals:
+    def _answers(self, run: Run, mechanisms: Sequence[Mechanism], of_drive: Mapping[str, float]) -> Signals:
         kind = run.drive
         shift = sum(of_drive.get(name, 0.0) for name, of in DRIVE_ERRORS.items() if of == kind and name != "force_gain")
         gain = of_drive.get("force_gain", 0.0) if kind == "force_N" else 0.0
@@ -101,7 +103,7 @@ class CouponEngine(SolvedOutright):
         model = self.model(mechanisms)
         course = run.label, len(drive)
         near = None if self.last is None else self.last.get(course)
-        point = point_of(self.specimen, model)
+        point = material_point(self.specimen, model)
         found = point.answer_near(run.time_s, drive, kind, near, point.peak_energy(run.largest_before))
         if self.last is not None:
             self.last[course] = found.unknown
@@ -113,10 +115,10 @@ class CouponEngine(SolvedOutright):
 
 
 def buckling_load_N(specimen: Specimen, material: Material) -> float:
-    """What a strip between grips can push before it bends aside and is slack; infinite for a block or a layer.
+    """Load at which a strip between grips buckles and goes slack; infinite for a block or a layer.
 
-    Euler's load of a column with clamped ends, 4 pi^2 E I / L^2 (Timoshenko and Gere, Theory of Elastic Stability,
-    2nd edition, 1961, section 2.1), with Young's modulus at small strain.
+    Euler's load of a column with clamped ends, 4 pi^2 E I / L^2 (Timoshenko and Gere, Theory of Elastic Stability, 2nd
+    edition, 1961, section 2.1), with Young's modulus at small strain.
     """
     if specimen.kind != "tension":
         return np.inf
@@ -125,13 +127,13 @@ def buckling_load_N(specimen: Specimen, material: Material) -> float:
     return float(4.0 * np.pi**2 * stiffness / specimen.length_mm**2)
 
 
-def point_of(specimen: Specimen, model: Model) -> MaterialPoint:
-    """The coupon whose material, thickness and physics are those of medium 1 of a model."""
+def material_point(specimen: Specimen, model: Model) -> MaterialPoint:
+    """Material point with the geometry of a coupon and the material, thickness and physics of medium 1 of a model."""
     physics, material = model.physics, model.materials[LAYER]
     thickness = model.segment.medium1.thickness_mm
     ratio = material.poisson_ratio
     return MaterialPoint(
-        kinematics_of(specimen.model_copy(update={"thickness_mm": thickness})),
+        coupon_kinematics(specimen.model_copy(update={"thickness_mm": thickness})),
         material.law,
         float(np.mean(ratio)),
         laws_of(physics.inelastic, Softening).get(LAYER),
@@ -143,7 +145,7 @@ def point_of(specimen: Specimen, model: Model) -> MaterialPoint:
 def coupon_engine(
     recording: Recording, materials: Mapping[str, Material], report: Report, last: Starts | None = None
 ) -> CouponEngine:
-    """The engine of a recording with a specimen; materials : the user's own. last : of the engine.
+    """Engine of a recording with a specimen. materials : the user's own. last : see CouponEngine.
 
     InputError for a material that is none of a coupon, a column that is missing, or a travel beyond the specimen.
     """
@@ -152,16 +154,16 @@ def coupon_engine(
     material = find_material(specimen.material, materials, "specimen.material")
     if isinstance(material, PiezoelectricFilm):
         raise InputError(f"specimen.material = '{specimen.material}': a film cannot be a coupon; name a medium")
-    _refuse_unfit(recording, specimen)
-    point = point_of(specimen, one_layer(material, specimen.thickness_mm))
+    _refuse_unfit_runs(recording, specimen)
+    point = material_point(specimen, layer_model(material, specimen.thickness_mm))
     candidates = candidates_of_coupon(CouponScene(recording, material, point))
     engine = CouponEngine(recording, specimen, material, candidates, last=last)
     report("material point", 1, 1)
     return engine
 
 
-def _refuse_unfit(recording: Recording, specimen: Specimen) -> None:
-    """Both columns are needed, and a block cannot be pressed through its whole thickness."""
+def _refuse_unfit_runs(recording: Recording, specimen: Specimen) -> None:
+    """InputError for a missing column, a voltage, or a block that is pressed through its whole thickness."""
     for run in recording.runs:
         for name in ("displacement_mm", "force_N"):
             if name not in run.channels:

@@ -5,13 +5,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from diagnose.engines.coupon.engine import CouponEngine
-from diagnose.engines.coupon.tested_layer import LAYER, switched
+from diagnose.engines.coupon.tested_layer import LAYER, active_mechanisms
 from diagnose.forward import Setting
 
 
 @dataclass(frozen=True)
 class ImprovedMaterial:
-    """name : as in rig.toml. table : [materials.NAME], its law with the fitted constants.
+    """A material after a coupon test. name : as in rig.toml.
+
+    table : [materials.NAME], its law with the fitted constants.
 
     mechanisms : [[mechanisms]] of the layer that is made of it, for relaxation and softening are no constants of a law.
     """
@@ -22,9 +24,9 @@ class ImprovedMaterial:
 
 
 def improved_material(engine: CouponEngine, settings: Sequence[Setting], component: str = LAYER) -> ImprovedMaterial:
-    """The material with fitted settings, nuisances of its modulus among them; component : the layer made of it."""
+    """Material with fitted settings, nuisances of its modulus among them; component : the layer that is made of it."""
     of_material = [s for s in settings if s.candidate.component not in ("drive", "rig")]
-    mechanisms = switched(of_material)
+    mechanisms = active_mechanisms(of_material)
     law = engine.model([one for one in mechanisms if not one.traits.memory]).materials[LAYER]
     table = law.model_dump(mode="json", exclude_none=True, exclude={"source", "confidence", "max_fitted_strain"})
     kept = tuple(

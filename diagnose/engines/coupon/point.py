@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnose.engines.coupon.flow import FlowingBranches
-from diagnose.engines.coupon.kinematics import Kinematics, Reading, SimpleShear
+from diagnose.engines.coupon.kinematics import Kinematics, SimpleShear, TesterReading
 from diagnose.engines.coupon.relaxation import NO_SERIES, Relaxation
 from diagnose.signals.recording import Drive
 from foundation.arrays import Floats
@@ -28,31 +28,31 @@ from solve.solution.errors import NoEquilibriumError
 
 
 def earlier_peaks(energy: Floats, before: float = 0.0) -> Floats:
-    """Largest energy (t,) before each sample of a history (t,); before : that before the first."""
+    """Largest energy (t,) before each sample of a history (t,); before : the largest before the first sample."""
     return np.maximum.accumulate(np.concatenate([[before], energy[:-1]]))
 
 
-def softened(law: Softening, elastic: StressResponse, peaks: Floats) -> StressResponse:
-    """The response (t points) where every sample remembers a largest energy (t,)."""
+def soften(law: Softening, elastic: StressResponse, peaks: Floats) -> StressResponse:
+    """Response (t points) where every sample remembers a largest energy (t,)."""
     return replace(law.update(elastic, (peaks,), 0.0)[0], energy=None)
 
 
 def youngs_modulus_MPa(law: MediumLaw) -> float:
-    """Of small strains, 9 K G / (3 K + G)."""
+    """Young's modulus at small strains, 9 K G / (3 K + G)."""
     shear, bulk = law.shear_modulus, law.bulk_modulus
     return 9.0 * bulk * shear / (3.0 * bulk + shear)
 
 
-TOLERANCE = 1e-6  # of the logarithm of the stretch, or of the shear; the iterate behind it errs by the square
-MAX_ITERATIONS = 80  # four or five, unless samples lie at the kink of softening
-MAX_ROUNDS = 30  # two or three
-PULLED = 10  # steps of a pull to the largest drive of an earlier run
-LARGEST_STEP = 0.3  # of the logarithm of the stretch, or of the shear, in one iteration
+STRETCH_TOLERANCE = 1e-6  # of the logarithm of the stretch, or of the shear; the iterate behind it errs by the square
+MAX_NEWTON_ITERATIONS = 80  # four or five, unless samples lie at the kink of softening
+MAX_SOFTENING_ROUNDS = 30  # two or three
+PULL_STEPS = 10  # steps of a pull to the largest drive of an earlier run
+LARGEST_NEWTON_STEP = 0.3  # of the logarithm of the stretch, or of the shear, in one iteration
 
 
 @dataclass(frozen=True)
 class PointAnswer:
-    """values (t,) : force in N or travel in mm. unknown (t, m) : of the kinematics, where nothing softens."""
+    """Answer of a material point. values (t,) : force in N or travel in mm. unknown (t, m) : where nothing softens."""
 
     values: Floats
     unknown: Floats
@@ -60,7 +60,10 @@ class PointAnswer:
 
 @dataclass(frozen=True)
 class MaterialPoint:
-    """law : in MPa; poisson_ratio : where the iteration starts; compliance_mm_per_N : of the tester."""
+    """A coupon that deforms uniformly. law : in MPa. poisson_ratio : from which the iteration starts.
+
+    series : what relaxes. compliance_mm_per_N : of the tester.
+    """
 
     kinematics: Kinematics
     law: MediumLaw
@@ -70,62 +73,62 @@ class MaterialPoint:
     compliance_mm_per_N: float = 0.0
 
     def answer(self, time_s: Floats, drive: Floats, kind: Drive) -> Floats:
-        """Force (t,) in N of a travel (t,) in mm, or travel of a force. NoEquilibriumError."""
+        """Force (t,) in N under a travel (t,) in mm, or travel under a force. NoEquilibriumError."""
         return self.answer_near(time_s, drive, kind).values
 
     def answer_near(
         self, time_s: Floats, drive: Floats, kind: Drive, near: Floats | None = None, peak_before: float = 0.0
     ) -> PointAnswer:
-        """The same with its unknowns; near (t, m) : those of a similar point, from which the iteration starts.
+        """Answer with its unknowns. near (t, m) : those of a similar point, from which the iteration starts.
 
-        peak_before : largest energy of the specimen in earlier runs, MPa.
+        peak_before : largest energy of the specimen in earlier runs, MPa. NoEquilibriumError.
         """
-        test = _Test(self, drive, kind == "displacement_mm", self.memory(time_s), peak_before)
+        test = _CouponRun(self, drive, kind == "displacement_mm", self.relaxation(time_s), peak_before)
         if near is not None:
             with suppress(NoEquilibriumError):
                 return test.answer_near(near)
-        return test.answer_near(test.start())
+        return test.answer_near(test.initial_unknowns())
 
-    def memory(self, time_s: Floats) -> Relaxation | FlowingBranches:
-        """What its series makes of histories at times (t,)."""
+    def relaxation(self, time_s: Floats) -> Relaxation | FlowingBranches:
+        """Relaxation of the point's series at times (t,) in s."""
         if isinstance(self.series, MultiplicativeMaxwell):
-            return FlowingBranches.of(self.series, self.law.shear_modulus, time_s)
-        return Relaxation.of(self.series, time_s)
+            return FlowingBranches.from_series(self.series, self.law.shear_modulus, time_s)
+        return Relaxation.from_series(self.series, time_s)
 
     def peak_energy(self, largest: Mapping[Drive, float]) -> float:
-        """Largest energy (MPa) under drives that reach these values, one after the other. NoEquilibriumError."""
+        """Largest energy in MPa under drives that reach these values, one after the other. NoEquilibriumError."""
         if self.softening is None or not largest:
             return 0.0
-        elastic, time = replace(self, softening=None, series=NO_SERIES), np.arange(1.0 + PULLED)
-        pulls = [elastic.answer_near(time, value * time / PULLED, kind) for kind, value in largest.items()]
+        elastic, time = replace(self, softening=None, series=NO_SERIES), np.arange(1.0 + PULL_STEPS)
+        pulls = [elastic.answer_near(time, value * time / PULL_STEPS, kind) for kind, value in largest.items()]
         return max(float(self.energy(pull.unknown[-1:])[0]) for pull in pulls)
 
     def travel_if_linear(self, force: Floats) -> Floats:
-        """Travel (t,) of a force at the stiffness of small strains."""
+        """Travel (t,) in mm under a force (t,) in N at the stiffness of small strains."""
         sheared = isinstance(self.kinematics, SimpleShear)
         modulus = self.law.shear_modulus if sheared else youngs_modulus_MPa(self.law)
         return force * self.kinematics.length_mm / (self.kinematics.area_mm2 * modulus)
 
     def energy(self, unknown: Floats) -> Floats:
-        """Strain energy (t,) without softening."""
+        """Strain energy (t,) in MPa at unknowns (t, m), without softening."""
         return self.law.energy(self.kinematics.cauchy_green(unknown))
 
-    def elastic(self, unknown: Floats, peaks: Floats | None) -> StressResponse:
-        """Stress and tangent without relaxation; softened from the largest energies before (t,), where given."""
+    def elastic_response(self, unknown: Floats, peaks: Floats | None) -> StressResponse:
+        """Stress and tangent at unknowns (t, m) without relaxation; softened by earlier largest energies (t,), if any."""
         c = self.kinematics.cauchy_green(unknown)
         response = StressResponse(*self.law.stress(c))
         if self.softening is None or peaks is None:
             return response
-        return softened(self.softening, replace(response, energy=self.law.energy(c)), peaks)
+        return soften(self.softening, replace(response, energy=self.law.energy(c)), peaks)
 
-    def reading(self, unknown: Floats, stress: Floats) -> Reading:
-        """What the tester reads at a stress (t, 6)."""
-        return self.kinematics.reading(unknown, stress, 0.0 if self.law.compressible else self.law.bulk_modulus)
+    def tester_reading(self, unknown: Floats, stress: Floats) -> TesterReading:
+        """Force, travel and lateral stress that the tester reads at unknowns (t, m) and stress (t, 6)."""
+        return self.kinematics.tester_reading(unknown, stress, 0.0 if self.law.compressible else self.law.bulk_modulus)
 
 
 @dataclass(frozen=True)
-class _Test:
-    """One run: drive (t,) in mm or N."""
+class _CouponRun:
+    """One run of a coupon test. drive (t,) : in mm or N. peak_before : largest energy in earlier runs, MPa."""
 
     point: MaterialPoint
     drive: Floats
@@ -133,51 +136,53 @@ class _Test:
     relaxation: Relaxation | FlowingBranches
     peak_before: float
 
-    def start(self) -> Floats:
+    def initial_unknowns(self) -> Floats:
         """Unknowns (t, m) near those of small strains."""
         travel = self.drive if self.by_travel else self.point.travel_if_linear(self.drive)
-        return self.point.kinematics.start(travel, self.point.poisson_ratio)
+        return self.point.kinematics.initial_unknowns(travel, self.point.poisson_ratio)
 
     def answer_near(self, start: Floats) -> PointAnswer:
-        """Force or travel, from unknowns (t, m) near. NoEquilibriumError."""
+        """Force or travel, from unknowns (t, m) nearby. NoEquilibriumError."""
         point = self.point
-        elastic, stress = self._settled(start, None)
-        unknown, stress = (elastic, stress) if point.softening is None else self._softened(elastic)
-        now = point.reading(unknown, self.relaxation.relaxed(stress, point.kinematics.cauchy_green(unknown)))
+        elastic, stress = self._solve_balance(start, None)
+        unknown, stress = (elastic, stress) if point.softening is None else self._solve_softening(elastic)
+        now = point.tester_reading(
+            unknown, self.relaxation.relaxed_stress(stress, point.kinematics.cauchy_green(unknown))
+        )
         answer = now.force if self.by_travel else now.travel + point.compliance_mm_per_N * now.force
         return PointAnswer(answer, elastic)
 
-    def _softened(self, unknown: Floats) -> tuple[Floats, Floats]:
-        """Unknowns and elastic stress with softening, from the unknowns without."""
-        for _ in range(MAX_ROUNDS):
+    def _solve_softening(self, unknown: Floats) -> tuple[Floats, Floats]:
+        """Unknowns (t, m) and elastic stress (t, 6) with softening, from the unknowns without."""
+        for _ in range(MAX_SOFTENING_ROUNDS):
             peaks, before = earlier_peaks(self.point.energy(unknown), self.peak_before), unknown
-            unknown, stress = self._settled(before, peaks)
-            if np.abs(unknown - before).max() <= TOLERANCE:
+            unknown, stress = self._solve_balance(before, peaks)
+            if np.abs(unknown - before).max() <= STRETCH_TOLERANCE:
                 return unknown, stress
-        raise self._nowhere()
+        raise self._no_equilibrium()
 
-    def _settled(self, unknown: Floats, peaks: Floats | None) -> tuple[Floats, Floats]:
+    def _solve_balance(self, unknown: Floats, peaks: Floats | None) -> tuple[Floats, Floats]:
         """Unknowns (t, m) in balance, and the elastic stress (t, 6) there, by its tangent over the last step."""
         last, damping = np.zeros_like(unknown), np.ones((len(unknown), 1))
-        for _ in range(MAX_ITERATIONS):
-            elastic = self.point.elastic(unknown, peaks)
-            strain_by = self.point.kinematics.strain_rates(unknown)
+        for _ in range(MAX_NEWTON_ITERATIONS):
+            elastic = self.point.elastic_response(unknown, peaks)
+            strain_by = self.point.kinematics.strain_derivatives(unknown)
             stress_by = np.asarray(elastic.tangent) @ strain_by
-            step = self._step(unknown, elastic.stress, stress_by, strain_by)
+            step = self._newton_correction(unknown, elastic.stress, stress_by, strain_by)
             largest = float(np.abs(step).max())
             if not np.isfinite(largest):
                 break
-            damping = _damped(damping, step, last)
-            last = np.clip(damping * step, -LARGEST_STEP, LARGEST_STEP)
+            damping = _damping(damping, step, last)
+            last = np.clip(damping * step, -LARGEST_NEWTON_STEP, LARGEST_NEWTON_STEP)
             unknown = unknown + last
-            if largest <= TOLERANCE:
+            if largest <= STRETCH_TOLERANCE:
                 return unknown, elastic.stress + np.einsum("tcm,tm->tc", stress_by, last)
-        raise self._nowhere()
+        raise self._no_equilibrium()
 
-    def _step(self, unknown: Floats, stress: Floats, stress_by: Floats, strain_by: Floats) -> Floats:
-        """Newton's correction (t, m). stress (t, 6) is the elastic one, ..._by (t, 6, m) derivatives."""
+    def _newton_correction(self, unknown: Floats, stress: Floats, stress_by: Floats, strain_by: Floats) -> Floats:
+        """Newton's correction (t, m). stress (t, 6) : the elastic one. stress_by, strain_by (t, 6, m) : derivatives."""
         strain = self.point.kinematics.cauchy_green(unknown)
-        now = self.point.reading(unknown, self.relaxation.relaxed(stress, strain))
+        now = self.point.tester_reading(unknown, self.relaxation.relaxed_stress(stress, strain))
         weight = self.point.compliance_mm_per_N if self.by_travel else 1.0
         along = float(self.by_travel)
         residual = np.column_stack([along * now.travel + weight * now.force - self.drive, now.lateral])
@@ -186,12 +191,12 @@ class _Test:
         by_unknown = np.concatenate([of_drive[:, None, :], now.lateral_unknown], axis=1)
         return self.relaxation.newton_step(residual, by_stress, stress_by, by_unknown, strain, strain_by)
 
-    def _nowhere(self) -> NoEquilibriumError:
+    def _no_equilibrium(self) -> NoEquilibriumError:
         reason = "the coupon has no equilibrium: the stress of its law falls within this travel or force"
         return NoEquilibriumError(reason, self.drive, None)
 
 
-def _damped(damping: Floats, step: Floats, last: Floats) -> Floats:
-    """Share (t, 1) of the step: halved where samples jump to and fro over a kink of softening, else raised to 1."""
+def _damping(damping: Floats, step: Floats, last: Floats) -> Floats:
+    """Damping (t, 1) of a step: halved where samples jump to and fro over a kink of softening, else raised to 1."""
     reversed_ = (step * last).sum(axis=1, keepdims=True) < -0.25 * (last * last).sum(axis=1, keepdims=True)
     return np.where(reversed_, 0.5 * damping, np.minimum(1.2 * damping, 1.0))

@@ -18,7 +18,7 @@ NO_SERIES = Prony((), ())
 
 @dataclass(frozen=True)
 class Relaxation:
-    """A Prony series on one clock, at rest before the first sample.
+    """A Prony series of b branches at t times, at rest before the first sample.
 
     moduli : g_i (b,); fade : exp(-a), gain : (1 - exp(-a)) / a with a = dt / tau_i, (t, b), dt = 0 at first.
     """
@@ -28,19 +28,19 @@ class Relaxation:
     gain: Floats
 
     @classmethod
-    def of(cls, series: Prony, time_s: Floats) -> "Relaxation":
-        """The series at times (t,)."""
+    def from_series(cls, series: Prony, time_s: Floats) -> "Relaxation":
+        """Relaxation by a Prony series at times (t,) in s."""
         fade, gain = _decay(series.relaxation_times, time_s.tobytes())
         return cls(np.array(series.relative_moduli, dtype=np.float64), fade, gain)
 
     @property
-    def instant(self) -> Floats:
-        """d stress / d elastic stress at the same time, (t,)."""
+    def instantaneous_stiffness(self) -> Floats:
+        """Derivative (t,) of the stress by the elastic stress at the same time."""
         return np.asarray(1.0 - self.moduli.sum() + self.gain @ self.moduli)
 
-    def relaxed(self, elastic: Floats, cauchy_green: Floats | None = None) -> Floats:
-        """Stress (t, c) of the history (t, c) of the elastic one, whatever the strain."""
-        return np.asarray(_relaxed(elastic, self.moduli, self.fade, self.gain))
+    def relaxed_stress(self, elastic: Floats, cauchy_green: Floats | None = None) -> Floats:
+        """Stress (t, c) after the history (t, c) of the elastic stress; the strain does not matter."""
+        return np.asarray(_relaxed_stress(elastic, self.moduli, self.fade, self.gain))
 
     def newton_step(
         self, residual: Floats, by_stress: Floats, stress_by: Floats, by_unknown: Floats, cauchy_green: Floats,
@@ -48,21 +48,22 @@ class Relaxation:
     ) -> Floats:  # fmt: skip
         """Correction (t, m) of the unknowns that makes residual (t, m) vanish, memory included.
 
-        by_stress (t, m, c) : of the residual; stress_by (t, c, m) : of the elastic stress by the unknowns;
-        by_unknown (t, m, m) : of the residual at fixed stress. The strain does not matter.
+        by_stress (t, m, c) : derivative of the residual by the stress; stress_by (t, c, m) : of the elastic stress by
+        the unknowns; by_unknown (t, m, m) : of the residual by the unknowns at fixed stress. The strain does not
+        matter.
         """
         return np.asarray(_newton_step(residual, by_stress, stress_by, by_unknown, self.moduli, self.fade, self.gain))
 
 
 @lru_cache(maxsize=64)
 def _decay(relaxation_times: tuple[float, ...], clock: bytes) -> tuple[Floats, Floats]:
-    """Of branches (b,) at times (t,), kept since fits change their moduli alone."""
+    """Fade and gain (t, b) of branches at times (t,), cached since fits change the moduli alone."""
     time_s = np.frombuffer(clock)
     return Prony((), relaxation_times).decay(np.diff(time_s, prepend=time_s[0]))
 
 
 @nb.njit(cache=True)
-def _relaxed(elastic, moduli, fade, gain):  # type: ignore[no-untyped-def]
+def _relaxed_stress(elastic, moduli, fade, gain):  # type: ignore[no-untyped-def]
     samples, parts = elastic.shape
     branches = np.zeros((len(moduli), parts))
     stress = np.empty_like(elastic)
@@ -97,7 +98,7 @@ def _newton_step(residual, by_stress, stress_by, by_unknown, moduli, fade, gain)
                 matrix[i, j] = by_unknown[t, i, j]
                 for c in range(parts):
                     matrix[i, j] += instant * by_stress[t, i, c] * stress_by[t, c, j]
-        solved(matrix, right, step[t])
+        solve_small_system(matrix, right, step[t])
         for c in range(parts):
             new[c] = 0.0
             for j in range(size):
@@ -109,8 +110,8 @@ def _newton_step(residual, by_stress, stress_by, by_unknown, moduli, fade, gain)
 
 
 @nb.njit(inline="always")
-def solved(matrix, right, out):  # type: ignore[no-untyped-def]
-    """One unknown or two: out (m,) of matrix (m, m) and right (m,)."""
+def solve_small_system(matrix, right, out):  # type: ignore[no-untyped-def]
+    """Solve matrix (m, m) x = right (m,) for one or two unknowns, into out (m,)."""
     if len(right) == 1:
         out[0] = right[0] / matrix[0, 0]
     else:

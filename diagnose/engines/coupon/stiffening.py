@@ -16,16 +16,16 @@ from typing import Any
 from diagnose.forward import Coordinate
 from solve.materials.parameters import Material, MooneyRivlin, Ogden, Yeoh
 
-EXPONENTS = (4.0, 8.0, -2.0)
-OF_SHEAR = (4.0, 8.0, 1.0)  # -2 is the same as 2 there
-UPWARDS = (4.0, 8.0)
-ADDED = Coordinate("force_ratio_less_1", -0.95, 20.0, (0.5, -0.5))
-SHARE = 20.0  # of one term, in terms of the force without; terms may compensate each other
+OGDEN_EXPONENTS = (4.0, 8.0, -2.0)
+SHEAR_EXPONENTS = (4.0, 8.0, 1.0)  # -2 is the same as 2 there
+FORCE_DRIVEN_EXPONENTS = (4.0, 8.0)
+FORCE_CHANGE = Coordinate("force_ratio_less_1", -0.95, 20.0, (0.5, -0.5))
+LARGEST_TERM_SHARE = 20.0  # of one term, in terms of the force without; terms may compensate each other
 
 
 @dataclass(frozen=True)
 class Stiffening:
-    """stretch : the principal one, along the load, at the largest strain.
+    """The family of laws around a material. stretch : the principal one, along the load, at the largest strain.
 
     lateral : a principal stretch across is stretch ** -lateral, 1/2 in tension and compression, 1 in simple shear.
     by_force : whether any run is driven by its force.
@@ -38,33 +38,38 @@ class Stiffening:
 
     @property
     def exponents(self) -> tuple[float, ...]:
-        """Of the terms that are added to Ogden's series."""
+        """Exponents of the terms that are added to Ogden's series."""
         if self.by_force:
-            chosen: tuple[float, ...] = UPWARDS
+            chosen: tuple[float, ...] = FORCE_DRIVEN_EXPONENTS
         else:
-            chosen = OF_SHEAR if self.lateral == 1.0 else EXPONENTS
+            chosen = SHEAR_EXPONENTS if self.lateral == 1.0 else OGDEN_EXPONENTS
         return tuple(-abs(exponent) for exponent in chosen) if self.stretch < 1.0 else chosen
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:
-        """Of the force at the largest strain, and of all terms but the first; of each term where a force drives."""
+        """Coordinates of a fit: the force at the largest strain, and the share of each term but the first.
+
+        One for each term where a force drives.
+        """
         names = ("c20", "c30") if isinstance(self.material, Yeoh) else [f"exponent_{a:g}" for a in self.exponents]
         if self.by_force:
-            return tuple(Coordinate(f"force_by_{name}", 0.0, SHARE, (0.5,)) for name in names)
-        return ADDED, *(Coordinate(f"force_by_{name}", -SHARE, SHARE, (0.5, -0.5)) for name in names[1:])
+            return tuple(Coordinate(f"force_by_{name}", 0.0, LARGEST_TERM_SHARE, (0.5,)) for name in names)
+        return FORCE_CHANGE, *(
+            Coordinate(f"force_by_{name}", -LARGEST_TERM_SHARE, LARGEST_TERM_SHARE, (0.5, -0.5)) for name in names[1:]
+        )
 
     def parameters(self, values: Sequence[float]) -> dict[str, Any]:
-        """Constants of the law."""
+        """Constants of the law by name, from the values of the coordinates."""
         added = values if self.by_force else [values[0] - sum(values[1:]), *values[1:]]
         if isinstance(self.material, Yeoh):
-            whole, x = self._slope_of_yeoh, self._excess
+            whole, x = self._yeoh_slope_MPa, self._invariant_excess
             c20 = self.material.c20_MPa + whole * added[0] / (2.0 * x)
             c30 = self.material.c30_MPa + whole * added[1] / (3.0 * x**2)
             return {"c10_MPa": self.material.c10_MPa, "c20_MPa": c20, "c30_MPa": c30}
-        mu, alpha = _terms(self.material)
-        whole = sum(m * self._stress(a) for m, a in zip(mu, alpha, strict=True))
+        mu, alpha = _ogden_terms(self.material)
+        whole = sum(m * self._term_stress(a) for m, a in zip(mu, alpha, strict=True))
         extra = [
-            whole * value / (self._stress(a) - 0.5 * a * self._stress(2.0))
+            whole * value / (self._term_stress(a) - 0.5 * a * self._term_stress(2.0))
             for value, a in zip(added, self.exponents, strict=True)
         ]
         kept = -0.5 * sum(m * a for m, a in zip(extra, self.exponents, strict=True))
@@ -73,26 +78,26 @@ class Stiffening:
             terms[a] = terms.get(a, 0.0) + m
         return {"mu_MPa": list(terms.values()), "alpha": list(terms)}
 
-    def _stress(self, exponent: float) -> float:
-        """dW / d ln(stretch) over mu of one term, at constant volume."""
+    def _term_stress(self, exponent: float) -> float:
+        """Stress of one term over its mu, dW / d ln(stretch) / mu, at constant volume."""
         return float(self.stretch**exponent - self.stretch ** (-self.lateral * exponent))
 
     @property
-    def _excess(self) -> float:
-        """I1 - 3: stretches l, l^-1 and 1 in shear, l, l^-1/2 twice else."""
+    def _invariant_excess(self) -> float:
+        """I1 - 3 at the largest strain: stretches are l, 1 / l and 1 in shear, else l and twice l^-1/2."""
         across = self.stretch ** (-2.0 * self.lateral)
         return float(self.stretch**2 + across + (1.0 if self.lateral == 1.0 else across)) - 3.0
 
     @property
-    def _slope_of_yeoh(self) -> float:
-        """dW / dI1 at the largest strain."""
+    def _yeoh_slope_MPa(self) -> float:
+        """Slope dW / dI1 of a Yeoh law at the largest strain."""
         assert isinstance(self.material, Yeoh)
-        x = self._excess
+        x = self._invariant_excess
         return self.material.c10_MPa + 2.0 * self.material.c20_MPa * x + 3.0 * self.material.c30_MPa * x**2
 
 
-def _terms(material: Material) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """mu in MPa and alpha of a law as Ogden has it."""
+def _ogden_terms(material: Material) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Constants mu in MPa and alpha of a law, written as Ogden's."""
     if isinstance(material, MooneyRivlin):
         return (2.0 * material.c10_MPa, -2.0 * material.c01_MPa), (2.0, -2.0)
     if isinstance(material, Ogden):

@@ -17,7 +17,7 @@ from diagnose.engines.coupon.kinematics import SimpleShear
 from diagnose.engines.coupon.point import MaterialPoint
 from diagnose.engines.coupon.relaxation import NO_SERIES, Relaxation
 from diagnose.engines.coupon.tested_layer import LAYER
-from diagnose.engines.proportional.medium import LARGEST_STRAIN, MEDIUM
+from diagnose.engines.proportional.medium import LARGEST_MEDIUM_STRAIN, MEDIUM
 from diagnose.vocabulary.scene import film_capacitance_pF
 from foundation.arrays import Floats
 from solve.added import TouchedFilm
@@ -29,14 +29,14 @@ from solve.model import Model, Readout
 from solve.physics import laws_of
 from solve.readout.amplifier import amplify
 
-HERTZ = 2.0 / 3.0
+HERTZ_AREA_EXPONENT = 2.0 / 3.0
 
 
 @dataclass(frozen=True, eq=False)
 class Loading:
-    """What a run gives: time_s (t,), force (t,) over the largest of the recording and from its rest, touch_s.
+    """Force of one run over time. time_s (t,). force (t,) : from its rest, over the largest of the recording. touch_s.
 
-    largest_before : force of earlier runs in the same measure. Compared by identity, so that strains can be kept.
+    largest_before : force of earlier runs in the same measure. Compared by identity, so that strains can be cached.
     """
 
     time_s: Floats
@@ -45,46 +45,46 @@ class Loading:
     largest_before: float = 0.0
 
 
-def strain(model: Model, loading: Loading) -> Floats:
+def medium_strain(model: Model, loading: Loading) -> Floats:
     """Strain (t,) of the medium over that at the largest force at the baseline. NoEquilibriumError."""
     inelastic, material = model.physics.inelastic, model.materials[LAYER]
     series = laws_of(inelastic, Prony).get(LAYER, NO_SERIES)
     softening = laws_of(inelastic, Softening).get(LAYER)
     if material == MEDIUM and softening is None and series == NO_SERIES:
         return loading.force
-    return _solved(material.law, softening, series, loading)
+    return _solve_strain(material.law, softening, series, loading)
 
 
 @lru_cache(maxsize=512)
-def _solved(law: MediumLaw, softening: Softening | None, series: Prony, loading: Loading) -> Floats:
-    """Strain (t,), kept since sensitivities and all that follows the film leave it alone."""
+def _solve_strain(law: MediumLaw, softening: Softening | None, series: Prony, loading: Loading) -> Floats:
+    """Strain (t,) of a medium that is not the baseline's, cached since what follows the film leaves it alone."""
     point = MaterialPoint(SimpleShear(1.0, 1.0), law, MEDIUM.poisson_ratio, softening, series)
-    peak = point.peak_energy({"force_N": LARGEST_STRAIN * loading.largest_before})
-    found = point.answer_near(loading.time_s, LARGEST_STRAIN * loading.force, "force_N", peak_before=peak)
-    return found.values / LARGEST_STRAIN
+    peak = point.peak_energy({"force_N": LARGEST_MEDIUM_STRAIN * loading.largest_before})
+    found = point.answer_near(loading.time_s, LARGEST_MEDIUM_STRAIN * loading.force, "force_N", peak_before=peak)
+    return found.values / LARGEST_MEDIUM_STRAIN
 
 
 def film_charge(model: Model, loading: Loading) -> Floats:
     """Charge (t,) that follows the load, in units of s, the film's own relaxation included. NoEquilibriumError."""
-    charge = strain(model, loading)
+    charge = medium_strain(model, loading)
     series = laws_of(model.physics.inelastic, Prony).get("film")
     if series is None:
         return charge
-    return Relaxation.of(series, loading.time_s).relaxed(charge[:, None])[:, 0]
+    return Relaxation.from_series(series, loading.time_s).relaxed_stress(charge[:, None])[:, 0]
 
 
 def other_charge(model: Model, loading: Loading) -> Floats:
-    """Charge (t,) in C that is not of the strain."""
+    """Charge (t,) in C of the touch and of heat."""
     film = model.materials["film"]
     assert isinstance(film, PiezoelectricFilm)
-    area = np.maximum(loading.force, 0.0) ** HERTZ
+    area = np.maximum(loading.force, 0.0) ** HERTZ_AREA_EXPONENT
     area_m2 = np.array([1e-6 * model.segment.length_mm * model.segment.width_mm])
     under = TouchedFilm(loading.time_s - loading.touch_s, area, area_m2, film.pyroelectric_uC_per_m2_K)
     return np.asarray(sum((one.charge_C(under)[:, 0] for one in model.physics.added), np.zeros(len(area))))
 
 
-def voltage(model: Model, loading: Loading, charge_C: Floats) -> Floats:
-    """What the amplifier gives (t,), at rest before the first sample."""
+def amplifier_voltage(model: Model, loading: Loading, charge_C: Floats) -> Floats:
+    """Voltage (t,) that the amplifier makes of a charge (t,) in C, at rest before the first sample."""
     before = loading.time_s[0] - (loading.time_s[1] - loading.time_s[0])
     time, charge = np.append(before, loading.time_s), np.append(0.0, charge_C)
     capacitance = 1e-12 * film_capacitance_pF(model)

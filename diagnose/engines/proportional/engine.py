@@ -12,8 +12,8 @@ from typing import Self
 
 import numpy as np
 
-from diagnose.engines.coupon.tested_layer import one_layer, switched, with_factors_last
-from diagnose.engines.proportional.charge import Loading, film_charge, other_charge, voltage
+from diagnose.engines.coupon.tested_layer import active_mechanisms, layer_model, with_factors_last
+from diagnose.engines.proportional.charge import Loading, amplifier_voltage, film_charge, other_charge
 from diagnose.engines.proportional.medium import MEDIUM
 from diagnose.forward import Candidate, Coordinate, Setting, Signals, SolvedOutright
 from diagnose.signals.phases import Segmentation, find_phases, rest_level
@@ -29,30 +29,31 @@ from solve.model import Model, Readout
 from solve.solution.errors import NoEquilibriumError
 
 SENSITIVITY, CAPACITANCE = "sensitivity", "film-capacitance"
-MOST_CAPACITANCE = 1e4  # of the assumed film
-ANY_FACTOR = 1e6
+LARGEST_CAPACITANCE_RATIO = 1e4  # of the assumed film
+LARGEST_SENSITIVITY_FACTOR = 1e6
 
 
-def sensitivity(channel: int) -> Candidate:
-    """Relative change of the sensitivity of a channel (from 1), of either sign; no mechanism."""
-    coordinate = Coordinate(f"sensitivity of channel {channel}", -ANY_FACTOR, ANY_FACTOR, (0.5,))
+def sensitivity_candidate(channel: int) -> Candidate:
+    """Candidate of the relative change of a channel's sensitivity (from 1), of either sign; no mechanism."""
+    coordinate = Coordinate(
+        f"sensitivity of channel {channel}", -LARGEST_SENSITIVITY_FACTOR, LARGEST_SENSITIVITY_FACTOR, (0.5,)
+    )
     return Candidate(SENSITIVITY, f"channel-{channel}", (coordinate,), lambda values: {"factor": 1.0 + values[0]})
 
 
-def film_capacitance() -> Candidate:
-    """What the film has more than the assumed one, in terms of that; no mechanism."""
-    coordinate = growing(CAPACITANCE, 1.0, MOST_CAPACITANCE, (1.0, 30.0, 1000.0))
+def capacitance_candidate() -> Candidate:
+    """Candidate of the capacitance that the film has beyond the assumed one, over that one; no mechanism."""
+    coordinate = growing(CAPACITANCE, 1.0, LARGEST_CAPACITANCE_RATIO, (1.0, 30.0, 1000.0))
     return Candidate(CAPACITANCE, "film", (coordinate,), lambda values: {"coordinate": values[0]})
 
 
 @dataclass(frozen=True)
 class ProportionalEngine(SolvedOutright):
-    """Charge in proportion to the measured force, behind the amplifier as stated.
+    """Forward model with a charge in proportion to the measured force, behind the amplifier as stated.
 
     largest_N : force above rest, of all runs. scene : sizes of the recording; its film is assumed, for only time
-    constants show. loadings : of each run.
-    sensitivity_C : (channels,) charge at the largest force at which the free sensitivities start. Nothing has to be
-    prepared, and solve is predict at those starts.
+    constants show. loadings : of each run. sensitivity_C : (channels,) charge at the largest force at which the free
+    sensitivities start. Nothing has to be prepared, and solve is predict at those starts.
     """
 
     recording: Recording
@@ -67,24 +68,24 @@ class ProportionalEngine(SolvedOutright):
     shortfalls: tuple[str, ...] = ()
 
     def nuisance(self, name: str) -> Candidate | None:
-        """None: moduli and thicknesses of a sensor that nobody knows hide in its sensitivity."""
+        """None for any name: moduli and thicknesses of a sensor that nobody knows hide in its sensitivity."""
 
     def with_candidates(self, candidates: tuple[Candidate, ...]) -> Self:
-        """The engine with fewer candidates."""
+        """This engine with fewer candidates."""
         return replace(self, candidates=candidates)
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
-        """Voltages of a run. ValueError beyond the bounds of a value, or where a law turns over."""
+        """Voltages (t,) of a run. ValueError beyond the bounds of a value, or where a law turns over."""
         hum = [s.values for s in settings if s.candidate.traits.free_phase]
-        signals = self._answer(self.recording.runs[run], self.loadings[run], settings)
+        signals = self._answers(self.recording.runs[run], self.loadings[run], settings)
         return {name: values + sum(self._hum(run, one) for one in hum) for name, values in signals.items()}
 
     def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
-        """Every answer of a run that was not made, without hum."""
+        """Every answer of a run that was not made, without hum. ValueError as predict."""
         phases = find_phases(run.time_s, run.drive_values, from_touch=False)
-        return self._answer(run, _loading(run, phases, self.largest_N), settings)
+        return self._answers(run, _scaled_loading(run, phases, self.largest_N), settings)
 
-    def _answer(self, run: Run, loading: Loading, settings: Sequence[Setting]) -> Signals:
+    def _answers(self, run: Run, loading: Loading, settings: Sequence[Setting]) -> Signals:
         own = {s.candidate.name: s.values[0] for s in settings if s.candidate.mechanism in (SENSITIVITY, CAPACITANCE)}
         rest = [
             s
@@ -94,7 +95,7 @@ class ProportionalEngine(SolvedOutright):
         more = sinh(own.get((CAPACITANCE, "film"), 0.0))
         factors = [1.0 + own.get((SENSITIVITY, f"channel-{n + 1}"), 0.0) for n in range(len(self.sensitivity_C))]
         try:
-            signals = self._voltages(run, loading, switched(rest), self.sensitivity_C * factors, more)
+            signals = self._voltages(run, loading, active_mechanisms(rest), self.sensitivity_C * factors, more)
         except NoEquilibriumError as error:
             raise ValueError(str(error)) from None
         return signals
@@ -111,50 +112,53 @@ class ProportionalEngine(SolvedOutright):
         sensitivity_C: Floats,
         more_capacitance: float = 0.0,
     ) -> Signals:
-        model = with_factors_last(model_of(run, more_capacitance), mechanisms)
+        model = with_factors_last(idle_model(run, more_capacitance), mechanisms)
         shape, other = film_charge(model, loading), other_charge(model, loading)
         return {
-            name: voltage(model, loading, charge * shape + other)
+            name: amplifier_voltage(model, loading, charge * shape + other)
             for name, charge in zip(self.recording.runs[0].voltages, sensitivity_C, strict=True)
         }
 
     def _hum(self, run: int, values: Sequence[float]) -> Floats:
-        """Sine and cosine (t,) of a run: behind the amplifier, whose filters only change amplitude and phase."""
+        """Hum (t,) of a run, from its sine and cosine.
+
+        The filters of the amplifier change only its amplitude and phase.
+        """
         phase = 2.0 * np.pi * self.scene.mains_Hz * self.recording.runs[run].time_s
         return np.asarray(values[2 * run] * np.sin(phase) + values[2 * run + 1] * np.cos(phase))
 
 
-def model_of(run: Run, more_capacitance: float = 0.0) -> Model:
-    """The idle segment with the medium of unit modulus and the amplifier of a run.
+def idle_model(run: Run, more_capacitance: float = 0.0) -> Model:
+    """Model of an idle segment with the medium of unit modulus and the amplifier of a run.
 
-    more_capacitance : of the film, in terms of the assumed one. Charge flows into film and input together, so that
-    it stands at the input.
+    more_capacitance : of the film, in terms of the assumed one. Charge flows into film and input together, so that it
+    stands at the input.
     """
-    model = one_layer(MEDIUM, 1.0, run.readout or Readout())
+    model = layer_model(MEDIUM, 1.0, run.readout or Readout())
     assert model.readout is not None
     added = model.readout.input_capacitance_pF + more_capacitance * film_capacitance_pF(model)
     return replace(model, readout=model.readout.model_copy(update={"input_capacitance_pF": added}))
 
 
 def proportional_engine(recording: Recording, report: Report) -> ProportionalEngine:
-    """The engine of a recording of force and voltages. InputError for another drive, or columns beside them."""
+    """Engine of a recording of force and voltages. InputError for another drive, or for columns beside them."""
     for run in recording.runs:
-        _refuse_unfit(run, recording.runs[0])
-    largest_N = max(_above_rest(run) for run in recording.runs)
-    loadings = tuple(_loading(*pair, largest_N) for pair in zip(recording.runs, recording.phases, strict=True))
+        _refuse_unfit_run(run, recording.runs[0])
+    largest_N = max(_largest_force_above_rest(run) for run in recording.runs)
+    loadings = tuple(_scaled_loading(*pair, largest_N) for pair in zip(recording.runs, recording.phases, strict=True))
     scene = _scene(recording)
-    free = [sensitivity(n + 1) for n in range(scene.channels)]
+    free = [sensitivity_candidate(n + 1) for n in range(scene.channels)]
     if any(readout.input_resistance_MOhm for readout in scene.readouts):
-        free.append(film_capacitance())
+        free.append(capacitance_candidate())
     engine = ProportionalEngine(
         recording, largest_N, scene, loadings, np.ones(scene.channels),
         candidates_of_unknown_geometry(scene, recording), tuple(free),
     )  # fmt: skip
     report("charge proportional to force", 1, 1)
-    return replace(engine, sensitivity_C=_start(engine))
+    return replace(engine, sensitivity_C=_starting_charge_C(engine))
 
 
-def _refuse_unfit(run: Run, first: Run) -> None:
+def _refuse_unfit_run(run: Run, first: Run) -> None:
     where = f"recording '{run.file}'"
     if run.drive != "force_N":
         raise InputError(f"{where}: geometry = 'unknown' needs drive = 'force_N', because its stiffness is not known")
@@ -167,13 +171,13 @@ def _refuse_unfit(run: Run, first: Run) -> None:
         raise InputError(f"{where}: has other columns of voltage than '{first.file}'")
 
 
-def _above_rest(run: Run) -> float:
-    """Largest distance of the force from its rest."""
+def _largest_force_above_rest(run: Run) -> float:
+    """Largest distance of the force of a run from its rest, in N."""
     return float(np.abs(run.drive_values - rest_level(run.drive_values)[0]).max())
 
 
-def _loading(run: Run, phases: Segmentation, largest_N: float) -> Loading:
-    """Force from its rest, over the largest of all runs."""
+def _scaled_loading(run: Run, phases: Segmentation, largest_N: float) -> Loading:
+    """Loading of a run: its force from its rest, over the largest of all runs."""
     level = rest_level(run.drive_values)[0]
     before = max(run.largest_before.get(run.drive, level) - level, 0.0)
     touch_s = float(run.time_s[phases.presses[0].touch])
@@ -183,7 +187,7 @@ def _loading(run: Run, phases: Segmentation, largest_N: float) -> Loading:
 def _scene(recording: Recording) -> Scene:
     runs = recording.runs
     return Scene(
-        model=model_of(runs[0]),
+        model=idle_model(runs[0]),
         readouts=tuple(run.readout or Readout() for run in runs),
         depth_mm=1.0,
         force_N=1.0,
@@ -194,7 +198,7 @@ def _scene(recording: Recording) -> Scene:
     )
 
 
-def _start(engine: ProportionalEngine) -> Floats:
+def _starting_charge_C(engine: ProportionalEngine) -> Floats:
     """Charge (channels,) in C at the largest force that makes voltages of the size and, mostly, sign recorded."""
     recorded, predicted, product = (np.zeros(len(engine.sensitivity_C)) for _ in range(3))
     for number, run in enumerate(engine.recording.runs):

@@ -148,7 +148,7 @@ class SegmentEngine:
     ) -> Signals:
         """Named channels of a run."""
         settings = [*self.declared, *(setting for setting in settings if any(setting.values))]
-        direct = [s.candidate.switched_on(s.values) for s in settings if s.candidate.traits.acts_on_tables]
+        direct = [s.candidate.as_mechanism(s.values) for s in settings if s.candidate.traits.acts_on_tables]
         on = with_mechanisms(replace(self.model, readout=self._readout(run)), direct)
         values = self._driven(drive, on, settings)
         found = self._mechanics(run, drive, values, on, settings)
@@ -163,7 +163,7 @@ class SegmentEngine:
         asked, drive = self.recording.runs[run], self.drives[run]
         base, beside = self.stands.at(asked.dot_offset_mm)
         believed = replace(moved(base.model, beside), readout=self._readout(asked))
-        stated = [setting.candidate.switched_on(setting.values) for setting in self.declared]
+        stated = [setting.candidate.as_mechanism(setting.values) for setting in self.declared]
         on = with_mechanisms(believed, [*stated, *mechanisms])
         elastic, values = replace(on, physics=replace(on.physics, inelastic={})), self._driven(drive, on, ())
 

@@ -75,7 +75,7 @@ class Presses:
         """A press, and the number of its mesh: 0 for the diagnosis mesh, 1 for the middle one."""
         back = BACK if candidate.traits.shows_on_return else ()
         finer = candidate.traits.on_middle_mesh or (self.all_finer and not back)
-        changed = with_mechanisms(self.model, [candidate.switched_on(point)])
+        changed = with_mechanisms(self.model, [candidate.as_mechanism(point)])
         job = self.job(changed, self.middle_mesh if finer else None)
         parts = SLIPS if any(term.follows_time for term in job.model.physics.terms) else 1
         return replace(job, back=back, parts=parts), int(finer)

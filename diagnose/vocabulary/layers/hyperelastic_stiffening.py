@@ -9,8 +9,8 @@ import numpy as np
 from diagnose.engines.coupon.kinematics import SimpleShear
 from diagnose.engines.coupon.point import MaterialPoint
 from diagnose.engines.coupon.stiffening import Stiffening
-from diagnose.engines.coupon.tested_layer import LAYER, SPECIMEN, PartOfLayer, one_layer
-from diagnose.engines.proportional.medium import LARGEST_STRAIN, MEDIUM
+from diagnose.engines.coupon.tested_layer import LAYER, SPECIMEN, PartOfLayer, layer_model
+from diagnose.engines.proportional.medium import LARGEST_MEDIUM_STRAIN, MEDIUM
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
 from diagnose.vocabulary.base import STIFFNESS, Vocabulary, register
@@ -52,7 +52,7 @@ def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidat
 
 def _of_sensor() -> Candidate:
     """force_ratio is that at the strain of the largest force without: the force that it takes with."""
-    stretch = SimpleShear(1.0, 1.0).principal_stretch(np.array([LARGEST_STRAIN]))
+    stretch = SimpleShear(1.0, 1.0).principal_stretch(np.array([LARGEST_MEDIUM_STRAIN]))
     law = Stiffening(MEDIUM, stretch, SimpleShear.lateral, by_force=True)
 
     def derived(values: Sequence[float]) -> dict[str, float]:
@@ -130,13 +130,13 @@ def _of_layer(
 
 def _of_specimen(material: Material, point: MaterialPoint, travel_mm: float, by_force: bool) -> Candidate:
     """force_ratio is that at the largest travel, with over without."""
-    unknown = point.kinematics.start(np.array([travel_mm]), point.poisson_ratio)
+    unknown = point.kinematics.initial_unknowns(np.array([travel_mm]), point.poisson_ratio)
     law = Stiffening(material, point.kinematics.principal_stretch(unknown[0]), point.kinematics.lateral, by_force)
     without = _force(point, travel_mm)
 
     def derived(values: Sequence[float]) -> dict[str, float]:
         mechanism = Mechanism(name=HYPERELASTIC_STIFFENING.name, component=LAYER, parameters=law.parameters(values))
-        stiff = with_mechanisms(one_layer(material, 1.0), [mechanism]).materials[LAYER]
+        stiff = with_mechanisms(layer_model(material, 1.0), [mechanism]).materials[LAYER]
         return {"force_ratio": _force(replace(point, law=stiff.law), travel_mm) / without}
 
     units = {"c10_MPa": "MPa", "c20_MPa": "MPa", "c30_MPa": "MPa", "mu_MPa": "MPa", "alpha": "", "force_ratio": ""}

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnose.engines.coupon.relaxation_spectrum import MOST_OF_COUPON, relaxation_times
+from diagnose.engines.coupon.relaxation_spectrum import LARGEST_MODULUS_RATIO, relaxation_times
 from diagnose.engines.coupon.tested_layer import LAYER, SPECIMEN, PartOfLayer
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
@@ -39,7 +39,7 @@ def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
     """The specimen, two branches a decade; rubber flows, but for a share that is fitted."""
     shares = () if scene.point.law.compressible else (LINEAR,)
     times = relaxation_times(scene.recording, len(shares))
-    yield spectrum(PartOfLayer, SPECIMEN, times, MOST_OF_COUPON, shares)
+    yield spectrum(PartOfLayer, SPECIMEN, times, LARGEST_MODULUS_RATIO, shares)
 
 
 def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidate]:

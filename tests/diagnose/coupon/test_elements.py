@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from diagnose.engines.coupon.kinematics import SimpleShear, Uniaxial
-from diagnose.engines.coupon.point import MaterialPoint, earlier_peaks, softened
+from diagnose.engines.coupon.point import MaterialPoint, earlier_peaks, soften
 from diagnose.engines.coupon.relaxation import Relaxation
 from solve.materials.inelastic import StressResponse
 from solve.materials.laws import InvariantLaw
@@ -111,8 +111,8 @@ def test_a_whole_history_is_what_the_law_makes_step_by_step(law):
         response, memory = law.update(one, memory, step)
         found.append(response.stress[0])
     if law is SERIES:
-        whole = Relaxation.of(law, time).relaxed(stress)
+        whole = Relaxation.from_series(law, time).relaxed_stress(stress)
     else:
         elastic = StressResponse(stress, np.tile(np.eye(6), (40, 1, 1)), energy)
-        whole = softened(law, elastic, earlier_peaks(energy)).stress
+        whole = soften(law, elastic, earlier_peaks(energy)).stress
     np.testing.assert_allclose(whole, found, rtol=1e-13, atol=1e-14)

@@ -218,7 +218,7 @@ def test_solve_with_the_mechanism_is_predict_with_its_setting():
     of = engine()
     for one in of.candidates:
         setting = Setting(one, tuple(coordinate.starts[0] for coordinate in one.coordinates))
-        solved = of.solve(0, [one.switched_on(setting.values)], silent)["force_N"]
+        solved = of.solve(0, [one.as_mechanism(setting.values)], silent)["force_N"]
         assert np.array_equal(solved, force(of, setting))
 
 

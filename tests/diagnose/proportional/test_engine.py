@@ -68,7 +68,7 @@ def test_every_candidate_is_off_at_zero_and_answers_at_its_starts():
             changed = voltage(of, Setting(one, at))
             assert np.isfinite(changed).all()
             assert not np.allclose(changed, baseline, rtol=1e-4), (one.name, at)
-            assert one.switched_on(at).parameters.keys() | one.derived(at).keys() <= one.units.keys()
+            assert one.as_mechanism(at).parameters.keys() | one.derived(at).keys() <= one.units.keys()
 
 
 def test_no_factor_is_a_candidate():

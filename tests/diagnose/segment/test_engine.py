@@ -39,7 +39,7 @@ def switched(of, mechanism, component, values):
 def errors(of, setting):
     """Channel -> error of the tables against the 3D model, and the size of the effect, both of the baseline's peak."""
     without, told = of.predict(0, []), of.predict(0, [setting])
-    true = of.solve(0, [setting.candidate.switched_on(setting.values)], silent)
+    true = of.solve(0, [setting.candidate.as_mechanism(setting.values)], silent)
     sizes = {name: peak(without[name]) for name in told}
     return {name: (peak(told[name] - true[name]) / size, peak(true[name] - without[name]) / size)
             for name, size in sizes.items()}  # fmt: skip
@@ -100,7 +100,7 @@ def test_far_from_all_presses_a_refinement_brings_the_tables_to_the_3d_model(rig
         changed = signals(of, [foam])
         return {name: (changed[name] - plain[name]) / peak(plain[name]) for name in plain}
 
-    true = change(fine, lambda of, on: of.solve(0, [s.candidate.switched_on(s.values) for s in on], silent))
+    true = change(fine, lambda of, on: of.solve(0, [s.candidate.as_mechanism(s.values) for s in on], silent))
     before = change(rig, lambda of, on: of.predict(0, on))
     assert rig.refine([foam], silent) == [foam]
     after = change(rig, lambda of, on: of.predict(0, on))
@@ -262,7 +262,7 @@ def test_softened_rubber_loses_on_the_way_back_and_the_second_time():
     twice = np.maximum(press(time, touch_s=0.1, **quick), press(time, touch_s=0.9, **quick))
     of = engine(run(values=twice))
     setting = switched(of, "stress-softening", "effector", (0.3, 0.0))
-    told, true = of.predict(0, [setting]), of.solve(0, [setting.candidate.switched_on(setting.values)], silent)
+    told, true = of.predict(0, [setting]), of.solve(0, [setting.candidate.as_mechanism(setting.values)], silent)
     assert peak(told["force_N"] - true["force_N"]) < 0.03 * peak(true["force_N"])
     first, second = (np.argmin(np.abs(time - t)) for t in (0.2, 1.0))
     assert twice[first] == pytest.approx(twice[second])
@@ -273,7 +273,7 @@ def test_softened_rubber_loses_on_the_way_back_and_the_second_time():
 @pytest.mark.evidence
 def test_force_ratio_is_what_the_3d_model_gains_at_the_deepest_press(rig):
     setting = switched(rig, "hyperelastic-stiffening", "effector", (0.3, 0.2))
-    true = rig.solve(0, [setting.candidate.switched_on(setting.values)], silent)
+    true = rig.solve(0, [setting.candidate.as_mechanism(setting.values)], silent)
     plain = rig.solve(0, [], silent)
     gained = peak(true["force_N"]) / peak(plain["force_N"])
     assert setting.candidate.derived(setting.values)["force_ratio"] == pytest.approx(gained, rel=0.01)

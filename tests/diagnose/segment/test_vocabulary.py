@@ -57,7 +57,7 @@ def test_each_coordinate_alone_is_a_mechanism(candidate):
         for value in coordinate.starts:
             at = np.zeros(len(candidate.coordinates))
             at[number] = value
-            assert candidate.switched_on(tuple(at)).component == candidate.component
+            assert candidate.as_mechanism(tuple(at)).component == candidate.component
 
 
 def test_without_an_effector_nothing_is_looked_for_in_it():
@@ -111,7 +111,7 @@ def test_coordinates_lie_within_their_bounds_and_switch_the_mechanism_on(candida
             assert coordinate.low - 1e-9 <= value <= coordinate.high + 1e-9
             assert value != 0.0
     middle = tuple(coordinate.starts[0] for coordinate in candidate.coordinates)
-    mechanism = candidate.switched_on(middle)
+    mechanism = candidate.as_mechanism(middle)
     assert set(candidate.derived(middle)) | set(mechanism.parameters) <= set(candidate.units)
     with_mechanisms(FULL.model, [mechanism])
 

@@ -56,7 +56,7 @@ class Known:
 
     def predict(self, number, settings):
         run = self.recording.runs[number]
-        on = [setting.candidate.switched_on(setting.values) for setting in settings if any(setting.values)]
+        on = [setting.candidate.as_mechanism(setting.values) for setting in settings if any(setting.values)]
         model = with_mechanisms(replace(self.model, readout=run.readout), on)
         drive = drive_of(run, self.recording.phases[number])
         course = pressed(replace(BENCH.made, offset_mm=run.dot_offset_mm[0])).at(np.maximum(drive.values, 0.0))
