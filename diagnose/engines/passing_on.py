@@ -1,4 +1,4 @@
-"""An engine that passes on what another one answers."""
+"""An engine that passes all questions on to another engine."""
 
 from collections.abc import Sequence
 from copy import copy
@@ -10,8 +10,8 @@ from foundation.progress import Report
 from solve.mechanisms import Mechanism
 
 
-class PassingOn:
-    """Implements diagnose.forward.Engine by another engine."""
+class DelegatingEngine:
+    """Base of engines that change one answer of another engine; see diagnose.forward.Engine."""
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
@@ -20,35 +20,35 @@ class PassingOn:
 
     @property
     def shortfalls(self) -> tuple[str, ...]:
-        """Of the engine."""
+        """Shortfalls of the other engine."""
         return self._engine.shortfalls
 
     def nuisance(self, name: str) -> Candidate | None:
-        """As the engine."""
+        """Candidate of a nuisance, from the other engine."""
         return self._engine.nuisance(name)
 
     def with_candidates(self, candidates: tuple[Candidate, ...]) -> Self:
-        """As the engine, with fewer candidates."""
+        """This engine with fewer candidates."""
         fewer = copy(self)
         fewer.candidates = candidates
         return fewer
 
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
-        """As the engine."""
+        """Prepare the other engine for these candidates."""
         self._engine.prepare(candidates, report)
 
     def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:
-        """As the engine."""
+        """Refine the other engine at these settings."""
         return self._engine.refine(settings, report)
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
-        """As the engine."""
+        """Every answer of a run, from the other engine."""
         return self._engine.predict(run, settings)
 
     def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
-        """As the engine."""
+        """Every answer of a run that was not made, from the other engine."""
         return self._engine.imagine(run, settings)
 
     def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
-        """As the engine."""
+        """Every answer of a run by the full model of the other engine."""
         return self._engine.solve(run, mechanisms, report)

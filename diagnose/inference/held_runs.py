@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnose.engines.some_runs import SomeRuns, all_but, some_runs
+from diagnose.engines.some_runs import SomeRuns, other_runs, select_runs
 from diagnose.findings import Findings, FittedModel
 from diagnose.fit.baseline import believed, fitted_baseline
 from diagnose.fit.linearised_system import linearised
@@ -30,11 +30,11 @@ def diagnose_and_score(
     Mechanisms and what all runs share are those of the training runs. What floats in a held-out run is fitted to it,
     without mechanisms and with them alike. InputError for a channel without noise.
     """
-    trained = all_but(recording, held)
-    own = some_runs(recording, trained)
+    trained = other_runs(recording, held)
+    own = select_runs(recording, trained)
     findings = diagnose(own, SomeRuns(engine, trained), seed, report)
     report("held-out runs", 0, 1)
-    return _scored(findings, _model_of(own, engine, trained), _model_of(some_runs(recording, held), engine, held))
+    return _scored(findings, _model_of(own, engine, trained), _model_of(select_runs(recording, held), engine, held))
 
 
 def _model_of(recording: Recording, engine: Engine, numbers: Sequence[int]) -> ObservedModel:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnose.engines.passing_on import PassingOn
+from diagnose.engines.passing_on import DelegatingEngine
 from diagnose.forward import Candidate, Coordinate, Engine, Setting, Signals
 from diagnose.noise.mains_lines import Line, line_basis
 from diagnose.noise.model import NoiseModel
@@ -54,7 +54,7 @@ def without(noise: NoiseModels, loud: Mapping[tuple[str, str], Line]) -> NoiseMo
     return result
 
 
-class HumEngine(PassingOn):
+class HumEngine(DelegatingEngine):
     """An engine whose mains-hum has a free sine and cosine in each channel with a loud line, at the output."""
 
     def __init__(self, engine: Engine, recording: Recording, loud: Mapping[tuple[str, str], Line]) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnose.engines.some_runs import all_but, some_runs
+from diagnose.engines.some_runs import other_runs, select_runs
 from diagnose.findings import Findings
 from diagnose.forward import Engine
 from diagnose.next_press.choose import MOST_PRESSES, NextPress, next_presses
@@ -116,7 +116,7 @@ def _fill(rig: Rig, options: Options, progress: Progress, folder: Path, executor
         findings = diagnose_and_score(rig.recording, engine, held, seed, report)
     else:
         findings = diagnose(rig.recording, engine, seed, report)
-    named_on = some_runs(rig.recording, all_but(rig.recording, held))
+    named_on = select_runs(rig.recording, other_runs(rig.recording, held))
     progress.stage("check with the full model")
     proof = _proof(rig, engine, findings, report, options.full_model_s)
     progress.stage("plan")

@@ -351,6 +351,6 @@ def test_a_diagnosis_looks_for_both():
     with pytest.raises(ValueError, match="a viscous guide"):
         solid().respond(time, None, on, force_N=0.1 * time)
     presses = Presses(model, mesh_of(False), MeshOptions(element_size_mm=0.9, mesher="layered"), 0.1)
-    job, _ = presses.with_candidate(foundation, (5.0,))
+    job, _ = presses.candidate_job(foundation, (5.0,))
     assert job.model.physics.terms == (Foundation(0.2),)
     assert guided(model, "rig", rubs).physics.structure == Physics()

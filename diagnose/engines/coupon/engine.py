@@ -65,7 +65,10 @@ class CouponEngine(SolvedOutright):
     last: Starts | None = field(default=None, repr=False, compare=False)
 
     def nuisance(self, name: str) -> Candidate | None:
-        """Candidate of a relative error of modulus.specimen or thickness.specimen, or of an error of the drive; else None."""
+        """Candidate of a relative error of modulus.specimen or thickness.specimen, or of an error of the drive.
+
+        None for any other name.
+        """
         if name in FACTOR_OF_NUISANCE:
             return relative_error(PartOfLayer, name, FACTOR_OF_NUISANCE[name])
         return drive_nuisance(name) if name in DRIVE_ERRORS else None

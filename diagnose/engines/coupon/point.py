@@ -114,7 +114,7 @@ class MaterialPoint:
         return self.law.energy(self.kinematics.cauchy_green(unknown))
 
     def elastic_response(self, unknown: Floats, peaks: Floats | None) -> StressResponse:
-        """Stress and tangent at unknowns (t, m) without relaxation; softened by earlier largest energies (t,), if any."""
+        """Stress and tangent at unknowns (t, m) without relaxation; softened by earlier peak energies (t,) if given."""
         c = self.kinematics.cauchy_green(unknown)
         response = StressResponse(*self.law.stress(c))
         if self.softening is None or peaks is None:

@@ -8,7 +8,7 @@ charge of the other: there each place has tables of its own, as have all candida
 from collections.abc import Mapping, Sequence
 
 from diagnose.engines.segment.prepared import Prepared
-from diagnose.engines.segment.presses import Place, moved
+from diagnose.engines.segment.presses import Place, with_dot_moved
 from diagnose.forward import Candidate, Setting
 from diagnose.signals.recording import Recording
 from foundation.executor import HERE, Executor
@@ -16,45 +16,51 @@ from foundation.progress import Report
 from solve.model import Model
 from solve.tables.rig_mesh import MeshSettings
 
-HOME: Place = (0.0, 0.0)
+HOME_PLACE: Place = (0.0, 0.0)
 
 
-class Stands:
-    """accuracy : see diagnose.forward.Engine, the worst of all places."""
+class DotPositions:
+    """Prepared presses for all positions of the dot in a recording.
+
+    accuracy : see diagnose.forward.Engine, the worst of all positions.
+    """
 
     def __init__(
         self, model: Model, options: MeshSettings, recording: Recording, report: Report, executor: Executor = HERE
     ) -> None:
         places = list(dict.fromkeys(run.dot_offset_mm for run in recording.runs))
         self._apart = len(model.segment.film.electrodes) > 1
-        homes = places if self._apart else [HOME]
+        homes = places if self._apart else [HOME_PLACE]
         self._at: Mapping[Place, Prepared] = {
-            home: Prepared(moved(model, home), options, recording, report, executor) for home in homes
+            home: Prepared(with_dot_moved(model, home), options, recording, report, executor) for home in homes
         }
         if not self._apart:
-            self._at[HOME].add((), places, report)
+            self._at[HOME_PLACE].add((), places, report)
         each = [prepared.accuracy for prepared in self._at.values()]
         self.accuracy = {name: max(one[name] for one in each) for name in each[0]}
 
-    def at(self, place: Place) -> tuple[Prepared, Place]:
-        """What was pressed, and how far from there the dot stands. ValueError where nothing was."""
+    def prepared_at(self, place: Place) -> tuple[Prepared, Place]:
+        """Prepared presses for a dot at a place, and its offset from where they press.
+
+        ValueError where nothing was pressed.
+        """
         if not self._apart:
-            return self._at[HOME], place
+            return self._at[HOME_PLACE], place
         if place not in self._at:
             raise ValueError(f"a dot at {place} mm was not prepared")
-        return self._at[place], HOME
+        return self._at[place], HOME_PLACE
 
     def add(self, candidates: Sequence[Candidate], report: Report) -> None:
-        """Press what these candidates need, wherever the dot stands. NoEquilibriumError."""
+        """Press what these candidates need, at all positions of the dot. NoEquilibriumError."""
         for prepared in self._at.values():
             prepared.add(candidates, (), report)
 
     def refine(self, settings: Sequence[Setting], report: Report) -> list[Setting]:
-        """Press these settings wherever the dot stands; those for which that changed anything that matters."""
+        """Press these settings at all positions of the dot; returns those for which that changed what matters."""
         changed = [one for prepared in self._at.values() for one in prepared.refine(settings, report)]
         return [setting for setting in settings if setting in changed]
 
     @property
     def shortfalls(self) -> tuple[str, ...]:
-        """What could not be pressed as it should, each sentence once."""
+        """Sentences on what could not be pressed as it should, each once."""
         return tuple(dict.fromkeys(said for one in self._at.values() for said in one.shortfalls.values()))

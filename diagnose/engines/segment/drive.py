@@ -12,7 +12,10 @@ from solve.reduced.time_stepping import BY_DEPTH, BY_FORCE
 
 @dataclass(frozen=True)
 class Drive:
-    """time_s (t,) from the first touch; values (t,) mm from the touch or N, of a kind; touching (t,)."""
+    """Drive of a model. time_s (t,) : from the first touch. values (t,) : mm from the touch, or N.
+
+    touching (t,) : flags.
+    """
 
     time_s: Floats
     values: Floats
@@ -21,12 +24,12 @@ class Drive:
 
     @property
     def by_depth(self) -> bool:
-        """Whether a displacement drives."""
+        """Whether a displacement drives, and not a force."""
         return self.kind == BY_DEPTH
 
 
-def drive_of(run: Run, phases: Segmentation) -> Drive:
-    """A force cannot pull."""
+def model_drive(run: Run, phases: Segmentation) -> Drive:
+    """Drive of a run as the model takes it; a force is at least 0, since it cannot pull."""
     first = phases.presses[0].touch if phases.presses else 0
     by_depth = run.drive == "displacement_mm"
     values = run.drive_values if by_depth else np.maximum(run.drive_values, 0.0)
@@ -37,7 +40,7 @@ def drive_of(run: Run, phases: Segmentation) -> Drive:
     return Drive(np.ascontiguousarray(time), np.ascontiguousarray(values), BY_DEPTH if by_depth else BY_FORCE, touching)
 
 
-def pressed_once(largest: float, drive: str) -> Drive:
-    """From nothing to the largest value (mm or N) of a drive."""
+def ramp_drive(largest: float, drive: str) -> Drive:
+    """Drive from nothing to a largest value, in mm or N by the name of the drive."""
     kind = BY_DEPTH if drive == "displacement_mm" else BY_FORCE
     return Drive(np.array([0.0, 1.0]), np.array([0.0, largest]), kind, np.array([False, True]))

@@ -9,17 +9,22 @@ from typing import Self
 import numpy as np
 
 from diagnose.engines.segment import full_model as full
-from diagnose.engines.segment.depth import ZERO, nuisance
+from diagnose.engines.segment.depth import DRIVE_ZERO, nuisance_candidate
 from diagnose.engines.segment.derived_quantities import with_derived
-from diagnose.engines.segment.dot_positions import Stands
-from diagnose.engines.segment.drive import Drive, drive_of, pressed_once
+from diagnose.engines.segment.dot_positions import DotPositions
+from diagnose.engines.segment.drive import Drive, model_drive, ramp_drive
 from diagnose.engines.segment.kept_answers import Courses, Recent
-from diagnose.engines.segment.path_history import PathHistory, with_history
+from diagnose.engines.segment.path_history import PathHistory, with_histories
 from diagnose.engines.segment.prepared import Prepared
-from diagnose.engines.segment.presses import Place, moved
-from diagnose.engines.segment.refusals import refuse
-from diagnose.engines.segment.response import FilmPlate, Mechanics, mechanics, shown
-from diagnose.engines.segment.stated_mechanisms import always_on, readout_behind, stated_apart, without_stated
+from diagnose.engines.segment.presses import Place, with_dot_moved
+from diagnose.engines.segment.refusals import refuse_unfit_baseline
+from diagnose.engines.segment.response import FilmPlate, Mechanics, channel_signals, mechanics
+from diagnose.engines.segment.stated_mechanisms import (
+    permanent_settings,
+    run_readout,
+    untabulated_mechanisms,
+    without_untabulated,
+)
 from diagnose.forward import Candidate, Setting, Signals
 from diagnose.signals.recording import Recording, Run
 from diagnose.vocabulary.base import candidates_of_segment
@@ -37,21 +42,24 @@ from solve.reduced.rig import compliance_mm_per_N
 from solve.tables.rig_mesh import MeshSettings, mesh_of
 from solve.tables.table_changes import changed
 
-ROUNDS = 40
-SETTLED = 1e-6  # of the largest force
-KEPT = 4  # tables, and courses of each run: with and without what is fitted, and a step of it
-Asked = tuple[Place, list[Setting], float]
+MAX_FIXED_POINT_ROUNDS = 40
+FORCE_TOLERANCE = 1e-6  # of the largest force
+KEPT_TABLES = 4  # tables, and courses of each run: with and without what is fitted, and a step of it
+TableQuestion = tuple[Place, list[Setting], float]
 
 
 def segment_engine(
     model: Model, mesh_settings: MeshSettings, recording: Recording, report: Report, executor: Executor = HERE
 ) -> "SegmentEngine":
-    """Press the baseline, or recall it. executor : does all presses. InputError, MeshingError, NoEquilibriumError."""
+    """Engine of a rig with a known segment: press the baseline, or recall it. executor : does all presses.
+
+    InputError, MeshingError, NoEquilibriumError.
+    """
     return SegmentEngine(model, mesh_settings, recording, report, executor)
 
 
 class SegmentEngine:
-    """Implements diagnose.forward.Engine."""
+    """Forward model of a rig with a known segment, by tables of the 3D model; see diagnose.forward.Engine."""
 
     name = "3D FEM"
     free_nuisances: tuple[Candidate, ...] = ()
@@ -59,30 +67,30 @@ class SegmentEngine:
     def __init__(
         self, model: Model, mesh_settings: MeshSettings, recording: Recording, report: Report, executor: Executor
     ) -> None:
-        refuse(model, recording)
-        self.declared = always_on(model)
-        self.model, self.recording = without_stated(model), recording
-        self.drives = [drive_of(*pair) for pair in zip(recording.runs, recording.phases, strict=True)]
-        self.stands = Stands(self.model, mesh_settings, recording, report, executor)
+        refuse_unfit_baseline(model, recording)
+        self.declared = permanent_settings(model)
+        self.model, self.recording = without_untabulated(model), recording
+        self.drives = [model_drive(*pair) for pair in zip(recording.runs, recording.phases, strict=True)]
+        self.stands = DotPositions(self.model, mesh_settings, recording, report, executor)
         self.stands.add([setting.candidate for setting in self.declared], report)
         self.stands.refine(self.declared, report)
         self.accuracy = self.stands.accuracy
-        self._tables: Recent[Asked, ResponseTable] = Recent(KEPT)
-        self._histories: Recent[tuple[Place, list[Setting]], list[PathHistory]] = Recent(KEPT)
-        self._courses = Courses(KEPT * len(recording.runs))
-        stated = {(one.name, one.component) for one in stated_apart(model)}
+        self._tables: Recent[TableQuestion, ResponseTable] = Recent(KEPT_TABLES)
+        self._histories: Recent[tuple[Place, list[Setting]], list[PathHistory]] = Recent(KEPT_TABLES)
+        self._courses = Courses(KEPT_TABLES * len(recording.runs))
+        stated = {(one.name, one.component) for one in untabulated_mechanisms(model)}
         self.candidates: tuple[Candidate, ...] = tuple(
             with_derived(c, self.prepared) for c in candidates_of_segment(self.scene) if c.name not in stated
         )
 
     @property
     def prepared(self) -> Prepared:
-        """What was pressed where the first run presses."""
-        return self.stands.at(self.recording.runs[0].dot_offset_mm)[0]
+        """Prepared presses for the position of the dot in the first run."""
+        return self.stands.prepared_at(self.recording.runs[0].dot_offset_mm)[0]
 
     @cached_property
     def scene(self) -> Scene:
-        """What the candidates depend on."""
+        """Scene of the recording, on which the candidates depend."""
         runs = self.recording.runs
         values = [run.channels[name][run.usable(name)] for run in runs for name in run.voltages]
         return Scene(
@@ -98,15 +106,15 @@ class SegmentEngine:
 
     @property
     def shortfalls(self) -> tuple[str, ...]:
-        """Candidates that the 3D model could not press as it should."""
+        """Sentences on candidates that the 3D model could not press as it should."""
         return self.stands.shortfalls
 
     def nuisance(self, name: str) -> Candidate | None:
-        """See diagnose.forward.Engine; also "offset_mm", the error of the first touch where a displacement drives."""
-        return nuisance(self.scene, self.recording, name)
+        """Candidate of a nuisance, see diagnose.forward.Engine; also "offset_mm", the error of the first touch."""
+        return nuisance_candidate(self.scene, self.recording, name)
 
     def with_candidates(self, candidates: tuple[Candidate, ...]) -> Self:
-        """The engine with fewer candidates."""
+        """This engine with fewer candidates."""
         fewer = copy(self)
         fewer.candidates = candidates
         return fewer
@@ -129,15 +137,15 @@ class SegmentEngine:
         """Every answer of a run. ValueError for what was not prepared, and where a signal is beyond all numbers."""
         asked, drive = self.recording.runs[run], self.drives[run]
         ahead_s, hum = self._hum(run, settings)
-        return self._answer(asked, drive, asked.answers, settings, hum, ahead_s)
+        return self._answers(asked, drive, asked.answers, settings, hum, ahead_s)
 
     def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
         """Every channel of a run that was not made, its hum left out. ValueError for what was not prepared."""
         runs = (*self.recording.runs, run)
         names = dict.fromkeys(name for each in runs for name in each.channels if name != run.drive)
-        return self._answer(run, drive_of(run, Recording((run,)).phases[0]), tuple(names), settings, (), 0.0)
+        return self._answers(run, model_drive(run, Recording((run,)).phases[0]), tuple(names), settings, (), 0.0)
 
-    def _answer(
+    def _answers(
         self,
         run: Run,
         drive: Drive,
@@ -146,14 +154,14 @@ class SegmentEngine:
         hum: Sequence[Hum],
         ahead_s: float,
     ) -> Signals:
-        """Named channels of a run."""
+        """Signals (t,) of the named channels of a run. ValueError as predict."""
         settings = [*self.declared, *(setting for setting in settings if any(setting.values))]
         direct = [s.candidate.as_mechanism(s.values) for s in settings if s.candidate.traits.acts_on_tables]
         on = with_mechanisms(replace(self.model, readout=self._readout(run)), direct)
-        values = self._driven(drive, on, settings)
+        values = self._drive_from_touch(drive, on, settings)
         found = self._mechanics(run, drive, values, on, settings)
         on = replace(on, physics=replace(on.physics, stages=(*on.physics.stages, *hum)))
-        signals = shown(run, names, drive, values, found, self._film(on), on, ahead_s)
+        signals = channel_signals(run, names, drive, values, found, self._film_plate(on), on, ahead_s)
         if not all(np.isfinite(signal[drive.touching]).all() for signal in signals.values()):
             raise ValueError(f"run '{run.label}': a signal is beyond all numbers")
         return signals
@@ -161,11 +169,11 @@ class SegmentEngine:
     def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
         """Every answer of a run by the 3D model along its own drive. ValueError, NoEquilibriumError."""
         asked, drive = self.recording.runs[run], self.drives[run]
-        base, beside = self.stands.at(asked.dot_offset_mm)
-        believed = replace(moved(base.model, beside), readout=self._readout(asked))
+        base, beside = self.stands.prepared_at(asked.dot_offset_mm)
+        believed = replace(with_dot_moved(base.model, beside), readout=self._readout(asked))
         stated = [setting.candidate.as_mechanism(setting.values) for setting in self.declared]
         on = with_mechanisms(believed, [*stated, *mechanisms])
-        elastic, values = replace(on, physics=replace(on.physics, inelastic={})), self._driven(drive, on, ())
+        elastic, values = replace(on, physics=replace(on.physics, inelastic={})), self._drive_from_touch(drive, on, ())
 
         def shape(fit: ResponseTable) -> full.Shape:
             return lambda of, values: mechanics(fit, base.depth_mm, base.relaxing, of, values, elastic)
@@ -173,71 +181,76 @@ class SegmentEngine:
         tet_mesh = mesh_of(on, base.model, base.presses.tet_mesh, base.presses.options)
         before = asked.largest_before.get(asked.drive, 0.0) if nonlinear_laws(on.physics.inelastic) else 0.0
         alike = shape(base.raw), shape(base.fit)
-        task = full.Task(asked, drive, values, on, tet_mesh, self._film(on), *alike, before)
+        task = full.Task(asked, drive, values, on, tet_mesh, self._film_plate(on), *alike, before)
         return full.solve(task, report)
 
     def _readout(self, run: Run) -> Readout | None:
-        return readout_behind(self.model, run.readout)
+        return run_readout(self.model, run.readout)
 
-    def _driven(self, drive: Drive, on: Model, settings: Sequence[Setting]) -> Floats:
-        """The drive (t,) from the first touch of a model, in mm, or in N."""
+    def _drive_from_touch(self, drive: Drive, on: Model, settings: Sequence[Setting]) -> Floats:
+        """Drive (t,) from the first touch of a model, in mm, or in N."""
         if not drive.by_depth:
             return drive.values
-        zero = sum(setting.values[0] for setting in settings if setting.candidate.mechanism == ZERO)
+        zero = sum(setting.values[0] for setting in settings if setting.candidate.mechanism == DRIVE_ZERO)
         return np.asarray(drive.values - on.dot.gap_mm - zero)
 
     def _mechanics(self, run: Run, drive: Drive, values: Floats, on: Model, settings: Sequence[Setting]) -> Mechanics:
-        """Path, force and charge. What depends on the path acts back on a compliant drive: a fixed point."""
-        (base, _), fit = self.stands.at(run.dot_offset_mm), self._fit(run, on, settings)
-        found = self._courses.of(fit, base.depth_mm, base.relaxing, drive, values, on)
-        asked = run.dot_offset_mm, base.returning(settings)
+        """Mechanics of a run. What depends on the path acts back on a compliant drive: a fixed point."""
+        (base, _), fit = self.stands.prepared_at(run.dot_offset_mm), self._response_table(run, on, settings)
+        found = self._courses.mechanics(fit, base.depth_mm, base.relaxing, drive, values, on)
+        asked = run.dot_offset_mm, base.path_dependent_settings(settings)
         if not asked[1]:
             return found
-        histories = self._histories.of(asked, lambda: base.histories(settings))
-        before_mm = self._reached_before(run, fit, on, settings)
+        histories = self._histories.recall_or_make(asked, lambda: base.path_histories(settings))
+        before_mm = self._depth_before_mm(run, fit, on, settings)
         give = compliance_mm_per_N(on.physics) if drive.by_depth else 1.0
         added = np.zeros(len(values))
-        for _ in range(ROUNDS):
-            whole = with_history(found, histories, fit, base.depth_mm, before_mm)
+        for _ in range(MAX_FIXED_POINT_ROUNDS):
+            whole = with_histories(found, histories, fit, base.depth_mm, before_mm)
             change = whole.force_N - found.force_N - added
             added = added + change
-            if give == 0.0 or np.abs(change).max() <= SETTLED * np.abs(whole.force_N).max():
+            if give == 0.0 or np.abs(change).max() <= FORCE_TOLERANCE * np.abs(whole.force_N).max():
                 break
             found = mechanics(fit, base.depth_mm, base.relaxing, drive, values - give * added, on)
         return whole
 
-    def _reached_before(self, run: Run, fit: ResponseTable, on: Model, settings: Sequence[Setting]) -> float:
-        """Deepest path of the dot (mm) in the runs before; what depends on the path does not act back on it here."""
-        base, _ = self.stands.at(run.dot_offset_mm)
+    def _depth_before_mm(self, run: Run, fit: ResponseTable, on: Model, settings: Sequence[Setting]) -> float:
+        """Deepest path of the dot in mm in the runs before; what depends on the path does not act back on it here."""
+        base, _ = self.stands.prepared_at(run.dot_offset_mm)
         slowly = tuple(term for term in on.physics.terms if not term.follows_time)
         at_once = replace(on, physics=replace(on.physics, inelastic={}, terms=slowly))
         deepest = 0.0
         for name, value in run.largest_before.items():
-            drive = pressed_once(value, name)
-            values = self._driven(drive, on, settings)
+            drive = ramp_drive(value, name)
+            values = self._drive_from_touch(drive, on, settings)
             found = mechanics(fit, base.depth_mm, base.relaxing, drive, values, at_once)
             deepest = max(deepest, float(found.path_mm[-1]))
         return deepest
 
-    def _fit(self, run: Run, on: Model, settings: Sequence[Setting]) -> ResponseTable:
-        """The table with all that changes it. It is kept: runs share it, and what stands behind the film leaves it."""
-        base, beside = self.stands.at(run.dot_offset_mm)
+    def _response_table(self, run: Run, on: Model, settings: Sequence[Setting]) -> ResponseTable:
+        """Response table of the rig with all that changes it.
+
+        It is kept: runs share it, and what stands behind the film leaves it alone.
+        """
+        base, beside = self.stands.prepared_at(run.dot_offset_mm)
         factor = _d31(on) / _d31(self.model)
 
-        def made() -> ResponseTable:
-            change = base.change(beside, settings)
+        def changed_table() -> ResponseTable:
+            change = base.table_change(beside, settings)
             if change is None and factor == 1.0:
                 return base.fit
-            return changed(base.fit, base.depths, base.nothing if change is None else change, factor)
+            return changed(base.fit, base.depths, base.no_change if change is None else change, factor)
 
-        return self._tables.of((run.dot_offset_mm, base.elastic(settings), factor), made)
+        return self._tables.recall_or_make((run.dot_offset_mm, base.elastic_settings(settings), factor), changed_table)
 
-    def _film(self, on: Model) -> FilmPlate:
-        """A thinner film has more capacitance."""
-        return self.prepared.film.thinner(self.model.segment.film.thickness_um / on.segment.film.thickness_um)
+    def _film_plate(self, on: Model) -> FilmPlate:
+        """Film of a model as a plate; a thinner film has more capacitance."""
+        return self.prepared.film.with_capacitance_factor(
+            self.model.segment.film.thickness_um / on.segment.film.thickness_um
+        )
 
     def _hum(self, run: int, settings: Sequence[Setting]) -> tuple[float, tuple[Hum, ...]]:
-        """By how much the mains are ahead of the touch in a run, and their hum."""
+        """Time in s by which the mains are ahead of the touch in a run, and their hum; none where it is off."""
         for setting in settings:
             if setting.candidate.traits.free_phase:
                 sine, cosine = setting.values[2 * run : 2 * run + 2]

@@ -6,9 +6,18 @@ from dataclasses import replace
 import numpy as np
 
 from diagnose.engines.segment import path_history as path
-from diagnose.engines.segment.depth import deepest, offset_reach_mm, rounded_up
-from diagnose.engines.segment.interpolation import Differences, effect_of
-from diagnose.engines.segment.presses import CHEAP_NODES, MOST_NODES, SHARES, Name, Place, Presses, all_there, moved
+from diagnose.engines.segment.depth import deepest_mm, offset_reach_mm, round_up_depth
+from diagnose.engines.segment.interpolation import Differences, candidate_effect
+from diagnose.engines.segment.presses import (
+    CHEAP_NODES,
+    DEPTH_SHARES,
+    MOST_NODES,
+    Name,
+    Place,
+    Presses,
+    require_equilibria,
+    with_dot_moved,
+)
 from diagnose.engines.segment.response import FilmPlate
 from diagnose.forward import Candidate, Setting
 from diagnose.signals.recording import Recording
@@ -29,21 +38,20 @@ from solve.tables.table_accuracy import accuracy
 from solve.tables.table_changes import TRUSTED, Depths, change, replaced
 from solve.tables.workers import run_all
 
-MARGIN = 1.02  # of the depth of the table over the deepest press
-FINEST = 0.4  # element sizes of the finest mesh, in terms of the diagnosis mesh
-MATTERS = 1e-3  # of force and charge: what a press may differ by from those around it
-ROUND_OFF = 1e-12  # of a weight
-TOUCH = 1e-6  # of the depth: there is no logarithm of 0
+TABLE_DEPTH_RATIO = 1.02  # of the depth of the table over the deepest press
+FINEST_ELEMENT_RATIO = 0.4  # element sizes of the finest mesh, in terms of the diagnosis mesh
+RELEVANT_CHANGE = 1e-3  # of force and charge: what a press may differ by from those around it
+NEGLIGIBLE_WEIGHT = 1e-12  # of a weight
+TOUCH_DEPTH_SHARE = 1e-6  # of the depth: there is no logarithm of 0
 
 
 class Prepared:
-    """depth_mm : of the table. pressed_mm : the deepest that the runs go, or a little more.
+    """Presses of one rig: the baseline's table, what layers remember, and changes by candidates.
 
-    relaxing : the layers whose memory is known.
-
-    raw : the baseline's table on the diagnosis mesh; fit : the same with the smoothed answer of a finer mesh.
-    executor : does what is pressed, now and later.
-    accuracy, shortfalls : see diagnose.forward.Engine; shortfalls by name of the press.
+    depth_mm : of the table. pressed_mm : depth of the deepest run, or a little more. relaxing : the layers whose memory
+    is known. raw : the baseline's table on the diagnosis mesh; fit : the same with the smoothed answer of a finer mesh.
+    executor : does all presses, now and later. accuracy, shortfalls : see diagnose.forward.Engine; shortfalls by name
+    of the press.
     """
 
     def __init__(
@@ -51,19 +59,19 @@ class Prepared:
     ) -> None:
         self.model, self._executor = model, executor
         tet_mesh, options = rig_mesh(model, options)
-        self.pressed_mm = rounded_up(deepest(model, tet_mesh, recording))
-        self.depth_mm = MARGIN * self.pressed_mm + offset_reach_mm(recording)
+        self.pressed_mm = round_up_depth(deepest_mm(model, tet_mesh, recording))
+        self.depth_mm = TABLE_DEPTH_RATIO * self.pressed_mm + offset_reach_mm(recording)
         self.presses = Presses(model, tet_mesh, options, self.depth_mm)
-        self.depths = Depths(SHARES)
+        self.depths = Depths(DEPTH_SHARES)
         self._changes: dict[Name, Floats] = {}
         self._differences: dict[Name, Differences] = {}
         self.shortfalls: dict[Name, str] = {}
-        finest = finer_mesh(model, options, FINEST, MOST_NODES)
+        finest = finer_mesh(model, options, FINEST_ELEMENT_RATIO, MOST_NODES)
         meshes = finest, self.presses.middle_mesh
-        jobs = [replace(self.presses.job(model, mesh), shares=PRESSED) for mesh in meshes]
-        reduction, outputs = self._reduced([*jobs, *self.presses.bases], report)
+        jobs = [replace(self.presses.press_job(model, mesh), shares=PRESSED) for mesh in meshes]
+        reduction, outputs = self._reduce([*jobs, *self.presses.baseline_jobs], report)
         fine, middle = (smooth(PRESSED, found) for found in outputs[: len(jobs)])
-        self._smooth = fine.at(np.linspace(TOUCH, 1.0, CELLS + 1))
+        self._smooth = fine.at(np.linspace(TOUCH_DEPTH_SHARE, 1.0, CELLS + 1))
         made = reduction.made()
         self.relaxing, self.raw = reduction.relaxing, made.fit
         self.film = FilmPlate(made.film, made.pyroelectric_uC_per_m2_K)
@@ -71,16 +79,17 @@ class Prepared:
         fine_mm, middle_mm = (options.element_size_mm for _, options in meshes)
         self.accuracy = accuracy(middle, fine, fine_mm / middle_mm)
 
-    def _reduced(self, jobs: Sequence[DepthPress], report: Report) -> tuple[Reduction, list[Floats]]:
-        """The reduction, with as many layers as have an equilibrium with all they may remember, and outputs of jobs.
+    def _reduce(self, jobs: Sequence[DepthPress], report: Report) -> tuple[Reduction, list[Floats]]:
+        """Reduction of the baseline, and outputs of jobs.
 
-        NoEquilibriumError where the baseline has none, or a layer that relaxes by rig.toml.
+        It has as many layers as have an equilibrium with all they may remember. NoEquilibriumError where the baseline
+        has none, or a layer that relaxes by rig.toml.
         """
         declared = linear_laws(self.model.physics.inelastic)
         layers = sorted(relaxable(self.model), key=lambda layer: layer not in declared)
         while True:
             reduction = Reduction(
-                self.presses.bases[0].model, self.presses.tet_mesh, self.depth_mm, tuple(layers), LARGEST_SHARE
+                self.presses.baseline_jobs[0].model, self.presses.tet_mesh, self.depth_mm, tuple(layers), LARGEST_SHARE
             )
             try:
                 outputs = run_all(jobs, report, [reduction], self._executor)
@@ -88,78 +97,81 @@ class Prepared:
                 if len(layers) <= len(declared):
                     raise
             else:
-                return reduction, all_there(outputs)
+                return reduction, require_equilibria(outputs)
             told = f"No equilibrium with the full memory of {', '.join(layers)}"
             dropped = layers.pop()
             left_out = f"{VISCOELASTICITY.name} of {dropped} is left out of the candidates"
             self.shortfalls[VISCOELASTICITY.name, dropped] = f"{told}: {left_out}."
 
     @property
-    def nothing(self) -> Floats:
-        """No change, (n, 2 + e)."""
-        return np.zeros((len(SHARES), 2 + len(self.film.electrodes)))
+    def no_change(self) -> Floats:
+        """Changes (n, 2 + e) of 0."""
+        return np.zeros((len(DEPTH_SHARES), 2 + len(self.film.electrodes)))
 
     def add(self, candidates: Sequence[Candidate], places: Sequence[Place], report: Report) -> None:
         """Press what these candidates, and dots at these places, need beyond what was pressed. NoEquilibriumError."""
-        wanted = {name: job for c in candidates for name, job in self._jobs(c) if name not in self._changes}
-        elsewhere = [place for place in places if any(place) and _at(place) not in self._changes]
+        wanted = {name: job for c in candidates for name, job in self._named_jobs(c) if name not in self._changes}
+        elsewhere = [place for place in places if any(place) and _place_name(place) not in self._changes]
         on, mesh = self.presses, self.presses.middle_mesh
-        wanted |= {_at(place): (on.job(moved(self.model, place), mesh), 1) for place in elsewhere}
-        self._changes |= self._pressed(wanted, report)
+        wanted |= {
+            _place_name(place): (on.press_job(with_dot_moved(self.model, place), mesh), 1) for place in elsewhere
+        }
+        self._changes |= self._press_changes(wanted, report)
         for candidate in candidates:
-            self._bridge(candidate)
+            self._replace_failed_presses(candidate)
 
     def refine(self, settings: Sequence[Setting], report: Report) -> list[Setting]:
-        """Press settings alone where they are not known yet; those that differ by more than MATTERS.
+        """Press settings alone where they are not pressed yet; returns those that differ by more than RELEVANT_CHANGE.
 
         A press that has no equilibrium, and one on a mesh that takes long, tells nothing. NoEquilibriumError.
         """
-        asked = {press_name(s.candidate, s.values): s for s in map(_as_pressed, settings) if self._may_differ(s)}
-        wanted = {name: self.presses.with_candidate(s.candidate, s.values) for name, s in asked.items()}
+        asked = {press_name(s.candidate, s.values): s for s in map(_pressed_part, settings) if self._may_differ(s)}
+        wanted = {name: self.presses.candidate_job(s.candidate, s.values) for name, s in asked.items()}
         quick = {name: job for name, job in wanted.items() if len(job[0].tet_mesh.points_mm) <= CHEAP_NODES}
         differing = []
-        for name, found in self._pressed(quick, report).items():
+        for name, found in self._press_changes(quick, report).items():
             setting = asked[name]
-            told = self._between(setting)
+            told = self._interpolate_change(setting)
             difference = found if told is None else found - told
-            self._differences[_coordinates(setting.candidate)].add(setting.values, difference)
-            differing += [setting] if self._size(difference) > MATTERS else []
-        return [setting for setting in settings if _as_pressed(setting) in differing]
+            self._differences[_coordinates_name(setting.candidate)].add(setting.values, difference)
+            differing += [setting] if self._change_size(difference) > RELEVANT_CHANGE else []
+        return [setting for setting in settings if _pressed_part(setting) in differing]
 
     def _may_differ(self, setting: Setting) -> bool:
         """Whether a press at these values would tell something new."""
         candidate = setting.candidate
         if not any(setting.values):
             return False
-        differences = self._differences.setdefault(_coordinates(candidate), Differences(candidate))
-        return not differences.known(setting.values)
+        differences = self._differences.setdefault(_coordinates_name(candidate), Differences(candidate))
+        return not differences.is_pressed_at(setting.values)
 
-    def _size(self, change: Floats) -> float:
-        """The larger of the changes of force and of charge, relative to those at the deepest press."""
+    def _change_size(self, change: Floats) -> float:
+        """Size of a change: the larger of those of force and of charge, relative to both at the deepest press."""
         force, _, *charges = self._smooth[-1]
         per_force = max(float(np.abs(charges).max()) / float(force), 1e-300)
         return max(float(np.abs(change[:, 0]).max()), float(np.abs(change[:, 2:]).max()) / per_force)
 
-    def _pressed(self, wanted: Mapping[Name, tuple[DepthPress, int]], report: Report) -> dict[Name, Floats]:
-        """Changes by jobs, each with the number of its mesh; those without equilibrium are left out."""
+    def _press_changes(self, wanted: Mapping[Name, tuple[DepthPress, int]], report: Report) -> dict[Name, Floats]:
+        """Changes by name of jobs, each with the number of its mesh; those without equilibrium are left out."""
         return {
-            name: self._change(*three) for name, three in self.presses.compared(wanted, report, self._executor).items()
+            name: self._change_of_press(*three)
+            for name, three in self.presses.run_with_baselines(wanted, report, self._executor).items()
         }
 
-    def _change(self, job: DepthPress, base: Floats, found: Floats) -> Floats:
-        """Against the baseline on the same mesh; charges scaled to those of the finest mesh."""
-        values = path.changes(found, base, SHARES, self.raw) if job.back else change(base, found)
+    def _change_of_press(self, job: DepthPress, base: Floats, found: Floats) -> Floats:
+        """Change of a press against the baseline on the same mesh; charges scaled to those of the finest mesh."""
+        values = path.path_changes(found, base, DEPTH_SHARES, self.raw) if job.back else change(base, found)
         force, _, *charges = self._smooth[-1]
         per_force = (np.array(charges) / force) / (base[-1, 2:] / base[-1, 0])
         values[:, 2:] *= np.clip(np.nan_to_num(per_force, nan=1.0), *TRUSTED)
         return values
 
-    def _bridge(self, candidate: Candidate) -> None:
-        """Where the 3D model found no equilibrium, take the nearest press of this candidate that has one.
+    def _replace_failed_presses(self, candidate: Candidate) -> None:
+        """Take the nearest press of this candidate where the 3D model found no equilibrium.
 
         Without any the candidate stays unprepared.
         """
-        points = effect_of(candidate).points
+        points = candidate_effect(candidate).points
         known = [point for point in points if press_name(candidate, point) in self._changes]
         for point in points:
             if point in known:
@@ -168,81 +180,85 @@ class Prepared:
             if known:
                 nearest = min(known, key=lambda other: float(np.linalg.norm(np.subtract(other, point))))
                 self._changes[name] = self._changes[press_name(candidate, nearest)]
-                instead = f"its press at {_values(candidate, nearest)} is used instead"
+                instead = f"its press at {_parameter_words(candidate, nearest)} is used instead"
             what = f"{candidate.mechanism} ({candidate.component})"
-            self.shortfalls[name] = f"No equilibrium with {what} at {_values(candidate, point)}: {instead}."
+            self.shortfalls[name] = f"No equilibrium with {what} at {_parameter_words(candidate, point)}: {instead}."
 
-    def _jobs(self, candidate: Candidate) -> Iterator[tuple[Name, tuple[DepthPress, int]]]:
-        """Presses by name."""
-        for point in effect_of(candidate).points:
-            yield press_name(candidate, point), self.presses.with_candidate(candidate, point)
+    def _named_jobs(self, candidate: Candidate) -> Iterator[tuple[Name, tuple[DepthPress, int]]]:
+        """Names of a candidate's presses, each with its job and the number of its mesh."""
+        for point in candidate_effect(candidate).points:
+            yield press_name(candidate, point), self.presses.candidate_job(candidate, point)
 
-    def change(self, place: Place, settings: Sequence[Setting]) -> Floats | None:
-        """The sum (n, 2 + e) of what elastic settings and the dot's place change; None for nothing. ValueError."""
-        parts = [] if not any(place) else [self._known(_at(place), f"a dot at {place} mm")]
-        parts += [values for values in map(self._between, self.elastic(settings)) if values is not None]
+    def table_change(self, place: Place, settings: Sequence[Setting]) -> Floats | None:
+        """Change (n, 2 + e) of the table by elastic settings and the dot's place; None for no change. ValueError."""
+        parts = [] if not any(place) else [self._pressed_change(_place_name(place), f"a dot at {place} mm")]
+        parts += [
+            values for values in map(self._interpolate_change, self.elastic_settings(settings)) if values is not None
+        ]
         return np.sum(parts, axis=0) if parts else None
 
-    def elastic(self, settings: Sequence[Setting]) -> list[Setting]:
-        """Those that change the table: they need presses and do not depend on the path."""
-        return [one for one in settings if not one.candidate.traits.shows_on_return and _is_pressed(one)]
+    def elastic_settings(self, settings: Sequence[Setting]) -> list[Setting]:
+        """Settings that change the table: they need presses and do not depend on the path."""
+        return [one for one in settings if not one.candidate.traits.shows_on_return and _needs_press(one)]
 
-    def returning(self, settings: Sequence[Setting]) -> list[Setting]:
-        """Those that depend on the path."""
-        return [one for one in settings if one.candidate.traits.shows_on_return and _is_pressed(one)]
+    def path_dependent_settings(self, settings: Sequence[Setting]) -> list[Setting]:
+        """Settings that need presses and depend on the path."""
+        return [one for one in settings if one.candidate.traits.shows_on_return and _needs_press(one)]
 
-    def histories(self, settings: Sequence[Setting]) -> list[path.PathHistory]:
-        """Of the settings that depend on the path. ValueError."""
-        each = map(self._between, self.returning(settings))
-        return [path.PathHistory(values, SHARES) for values in each if values is not None]
+    def path_histories(self, settings: Sequence[Setting]) -> list[path.PathHistory]:
+        """Histories of the settings that depend on the path. ValueError for one that was not prepared."""
+        each = map(self._interpolate_change, self.path_dependent_settings(settings))
+        return [path.PathHistory(values, DEPTH_SHARES) for values in each if values is not None]
 
-    def _between(self, setting: Setting) -> Floats | None:
-        """Changes (n, 2 + e), or of a path (n + b r, 2 + e); None where the setting is as good as off.
+    def _interpolate_change(self, setting: Setting) -> Floats | None:
+        """Changes (n, 2 + e) by a setting, or of a path (n + b r, 2 + e); None where it is as good as off.
 
         They come from the first presses, and from what those beyond differ by.
         """
-        candidate, effect = setting.candidate, effect_of(setting.candidate)
+        candidate, effect = setting.candidate, candidate_effect(setting.candidate)
         what = f"{candidate.mechanism} of {candidate.component}"
         weighed = zip(effect.weights(setting.values), effect.points, strict=True)
-        parts = [w * self._known(press_name(candidate, p), what) for w, p in weighed if abs(w) > ROUND_OFF]
-        more = self._differences.get(_coordinates(candidate))
-        beyond = more.at(setting.values) if more is not None else None
+        parts = [
+            w * self._pressed_change(press_name(candidate, p), what) for w, p in weighed if abs(w) > NEGLIGIBLE_WEIGHT
+        ]
+        more = self._differences.get(_coordinates_name(candidate))
+        beyond = more.difference_at(setting.values) if more is not None else None
         parts += [beyond] if beyond is not None else []
         return np.sum(parts, axis=0) if parts else None
 
-    def _known(self, name: Name, what: str) -> Floats:
+    def _pressed_change(self, name: Name, what: str) -> Floats:
         if name not in self._changes:
             raise ValueError(f"{what} was not prepared")
         return self._changes[name]
 
 
-def _is_pressed(setting: Setting) -> bool:
-    """Whether the setting needs a press."""
-    return any(setting.values[n] for n in effect_of(setting.candidate).pressed)
+def _needs_press(setting: Setting) -> bool:
+    """Whether a setting needs a press."""
+    return any(setting.values[n] for n in candidate_effect(setting.candidate).pressed)
 
 
-def _as_pressed(setting: Setting) -> Setting:
-    """Without what acts on the tables instead."""
-    pressed = effect_of(setting.candidate).pressed
+def _pressed_part(setting: Setting) -> Setting:
+    """Setting without what acts on the tables instead of in a press."""
+    pressed = candidate_effect(setting.candidate).pressed
     return replace(setting, values=tuple(v if n in pressed else 0.0 for n, v in enumerate(setting.values)))
 
 
 def press_name(candidate: Candidate, point: Sequence[float]) -> Name:
-    """Name of a press, one for a nuisance and for the candidate that has it among others."""
+    """Name of a press, the same for a nuisance and for the candidate that has it among others."""
     on = tuple((c.name, value) for c, value in zip(candidate.coordinates, point, strict=True) if value != 0.0)
     return (*candidate.name, on)
 
 
-def _coordinates(candidate: Candidate) -> Name:
-    """A candidate and a nuisance that is one of its coordinates are two."""
+def _coordinates_name(candidate: Candidate) -> Name:
+    """Name of a candidate by its coordinates: a candidate and a nuisance that is one of its coordinates are two."""
     return (*candidate.name, *(coordinate.name for coordinate in candidate.coordinates))
 
 
-def _values(candidate: Candidate, point: Sequence[float]) -> str:
-    """Parameters at a press, for a reader."""
+def _parameter_words(candidate: Candidate, point: Sequence[float]) -> str:
+    """Words for the parameters at a press."""
     parameters = candidate.parameters(point)
     return ", ".join(f"{k} = {v:.3g}" if isinstance(v, float) else f"{k} = {v}" for k, v in parameters.items())
 
 
-def _at(place: Place) -> Name:
+def _place_name(place: Place) -> Name:
     return ("place", *place)

@@ -1,4 +1,4 @@
-"""What a diagnosis with the 3D model cannot take as its baseline."""
+"""Baselines that a diagnosis with the 3D model refuses."""
 
 from diagnose.signals.recording import Recording
 from foundation.errors import InputError
@@ -9,8 +9,8 @@ from solve.model import Model
 from solve.physics import laws_of
 
 
-def refuse(model: Model, recording: Recording) -> None:
-    """InputError with one sentence."""
+def refuse_unfit_baseline(model: Model, recording: Recording) -> None:
+    """InputError, one sentence, for physics or depths that a diagnosis cannot take as its baseline."""
     film, physics = model.materials["film"], model.physics
     if isinstance(film, PiezoelectricFilm) and film.coupling == "two-way":
         raise InputError("coupling = 'two-way': a diagnosis needs a film whose voltage does not act back")

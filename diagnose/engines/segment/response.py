@@ -22,13 +22,16 @@ from solve.reduced.time_stepping import TOO_DEEP, follow
 
 @dataclass(frozen=True)
 class FilmPlate:
-    """Per electrode the capacitance in F and the area in m2, (e, 2); pyroelectric constant in uC / m2 K."""
+    """The film as a plate with e electrodes. electrodes (e, 2) : capacitance in F and area in m2 of each.
+
+    pyroelectric_uC_per_m2_K : pyroelectric constant.
+    """
 
     electrodes: Floats
     pyroelectric_uC_per_m2_K: float
 
-    def thinner(self, factor: float) -> "FilmPlate":
-        """A film whose capacitance is larger by a factor."""
+    def with_capacitance_factor(self, factor: float) -> "FilmPlate":
+        """Film whose capacitance is larger by a factor, as that of a thinner one."""
         return replace(self, electrodes=self.electrodes * [factor, 1.0])
 
     def added_charge_C(self, time_s: Floats, area_m2: Floats, physics: Physics) -> Floats:
@@ -38,7 +41,7 @@ class FilmPlate:
 
 @dataclass(frozen=True)
 class Mechanics:
-    """Over time (t,): the dot's path in mm, the contact force in N, its area in m2; charges (t, e) in C."""
+    """Dot and segment over time (t,): path of the dot in mm, contact force in N and area in m2, charges (t, e) in C."""
 
     path_mm: Floats
     force_N: Floats
@@ -49,8 +52,7 @@ class Mechanics:
 def mechanics(
     fit: ResponseTable, depth_mm: float, layers: tuple[str, ...], drive: Drive, values: Floats, on: Model
 ) -> Mechanics:
-    """The dot and the segment under a drive of these values (t,). ValueError where it goes deeper than the table, and
-    for what acts on a dot that is free to move and is neither spring nor mass."""
+    """Mechanics under a drive of these values (t,). ValueError where the dot goes deeper than the table."""
     physics, modes = on.physics, int(fit.start[-1])
     observed = fit.table.shape[2] - modes
     path, outputs = np.empty(len(values)), np.empty((len(values), observed))
@@ -69,18 +71,19 @@ def mechanics(
     return Mechanics(path, outputs[:, 0], np.maximum(outputs[:, 1], 0.0), outputs[:, 2:])
 
 
-def shown(
+def channel_signals(
     run: Run, names: Sequence[str], drive: Drive, values: Floats, found: Mechanics, film: FilmPlate, on: Model,
     ahead_s: float = 0.0,
 ) -> dict[str, Floats]:  # fmt: skip
-    """Channels of the run (t,) by name. Where nothing pushes, nobody can tell where a dot hangs: as recorded.
+    """Signals (t,) of the named channels of a run.
 
-    ahead_s : by which the mains are ahead of the first touch.
+    Where nothing pushes, nobody can tell where a dot hangs: there the path is as recorded. ahead_s : by which the mains
+    are ahead of the first touch.
     """
     signals: dict[str, Floats] = {}
-    voltages = sorted((name for name in names if name.startswith("voltage")), key=_electrode)
+    voltages = sorted((name for name in names if name.startswith("voltage")), key=_electrode_number)
     if voltages:
-        signals |= amplified(voltages, drive.time_s, found, film, on, ahead_s)
+        signals |= amplifier_voltages(voltages, drive.time_s, found, film, on, ahead_s)
     if "force_N" in names:
         told = (values, drive.kind, found.path_mm, found.force_N, on.physics)
         motion = Motion(values, lambda: run.velocity_mm_per_s, lambda: run.acceleration_mm_per_s2)
@@ -91,15 +94,15 @@ def shown(
     return {name: signals[name] for name in names}
 
 
-def _electrode(name: str) -> int:
-    """voltage_3_V -> 3."""
+def _electrode_number(name: str) -> int:
+    """Number of the electrode in the name of a channel, 0 without one: voltage_3_V -> 3."""
     return int("0" + "".join(filter(str.isdigit, name)))
 
 
-def amplified(
+def amplifier_voltages(
     names: Sequence[str], time_s: Floats, found: Mechanics, film: FilmPlate, on: Model, ahead_s: float
 ) -> dict[str, Floats]:
-    """Voltage channels (t,): one of all electrodes together, or one of each with what leaks in from the others.
+    """Voltages (t,) by name: one of all electrodes together, or one of each with what leaks in from the others.
 
     names : in the order of the electrodes.
     """

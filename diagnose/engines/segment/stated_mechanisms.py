@@ -1,4 +1,4 @@
-"""What rig.toml states of the physics, on top of the tables of a press that keeps to one path.
+"""Mechanisms that rig.toml states, on top of the tables of a press that keeps to one path.
 
 Friction, softening and yield are pressed as they are for a candidate, against the same segment without them: each is a
 candidate with one value, 1, which is always on. What acts on the read-out acts on that of every run, as runs may state
@@ -14,35 +14,37 @@ from solve.model import Model, Readout
 from solve.physics import linear_laws
 from solve.readout.stages import Hum
 
-STATED = Coordinate("stated", 0.0, 1.0, (1.0,), nodes=(1.0,))
+STATED_COORDINATE = Coordinate("stated", 0.0, 1.0, (1.0,), nodes=(1.0,))
 
 
-def stated_apart(model: Model) -> tuple[Mechanism, ...]:
+def untabulated_mechanisms(model: Model) -> tuple[Mechanism, ...]:
     """Mechanisms of a model that no table over depth holds: of the path, or of another phase in every run."""
     on = (one for one in model.mechanisms if not one.is_off)
     return tuple(one for one in on if one.traits.path_dependent or one.traits.free_phase)
 
 
-def without_stated(model: Model) -> Model:
-    """The model without them."""
-    apart = stated_apart(model)
+def without_untabulated(model: Model) -> Model:
+    """Model without the mechanisms that no table over depth holds."""
+    apart = untabulated_mechanisms(model)
     stages = tuple(stage for stage in model.physics.stages if not isinstance(stage, Hum))
     terms = tuple(term for term in model.physics.terms if term.of_rig or not term.follows_time)
     physics = replace(model.physics, terms=terms, inelastic=linear_laws(model.physics.inelastic), stages=stages)
     return replace(model, physics=physics, mechanisms=tuple(one for one in model.mechanisms if one not in apart))
 
 
-def always_on(model: Model) -> tuple[Setting, ...]:
-    """Those of them that depend on the path, as settings."""
-    return tuple(Setting(_stated(one), (1.0,)) for one in stated_apart(model) if one.traits.path_dependent)
+def permanent_settings(model: Model) -> tuple[Setting, ...]:
+    """Settings, always on, of the model's mechanisms that depend on the path."""
+    return tuple(
+        Setting(_stated_candidate(one), (1.0,)) for one in untabulated_mechanisms(model) if one.traits.path_dependent
+    )
 
 
-def _stated(mechanism: Mechanism) -> Candidate:
-    return Candidate(mechanism.name, mechanism.component, (STATED,), lambda _: dict(mechanism.parameters))
+def _stated_candidate(mechanism: Mechanism) -> Candidate:
+    return Candidate(mechanism.name, mechanism.component, (STATED_COORDINATE,), lambda _: dict(mechanism.parameters))
 
 
-def readout_behind(model: Model, readout: Readout | None) -> Readout | None:
-    """The read-out of a run with what the model's mechanisms make of it; None: the model's own."""
+def run_readout(model: Model, readout: Readout | None) -> Readout | None:
+    """Read-out of a run with what the model's mechanisms make of it; that of the model where the run has none."""
     if readout is None:
         return model.readout
     electrical = [one for one in model.mechanisms if one.traits.electrical]

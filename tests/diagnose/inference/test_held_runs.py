@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from diagnose.engines.some_runs import some_runs
+from diagnose.engines.some_runs import select_runs
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.samples import Samples
 from diagnose.inference.diagnose import diagnose
@@ -65,7 +65,7 @@ def test_runs_that_took_no_part_change_nothing_but_the_score():
 
 @pytest.mark.press
 def test_training_is_a_diagnosis_of_those_runs_alone():
-    alone = some_runs(leaking(), TRAINED)
+    alone = select_runs(leaking(), TRAINED)
     expected = diagnose(alone, ToyEngine(alone, candidates=FEW), 1, silent)
     assert found_of_leaking().best.parameters == expected.best.parameters
 

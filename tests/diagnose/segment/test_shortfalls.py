@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from diagnose.engines.segment import prepared
-from diagnose.engines.segment.interpolation import effect_of
+from diagnose.engines.segment.interpolation import candidate_effect
 from diagnose.engines.segment.prepared import Prepared, press_name
 from diagnose.forward import Candidate, Coordinate
 from solve.solution.errors import NoEquilibriumError
@@ -21,7 +21,7 @@ def bridged(*known):
     """What is known after presses at some values have an equilibrium."""
     changes = {press_name(GLUE, (value,)): np.full((1, 3), value) for value in known}
     known_of_it = SimpleNamespace(_changes=changes, shortfalls={}, _executor=None)
-    Prepared._bridge(known_of_it, GLUE)
+    Prepared._replace_failed_presses(known_of_it, GLUE)
     return known_of_it
 
 
@@ -31,7 +31,7 @@ def test_nothing_is_told_where_every_press_has_an_equilibrium():
 
 def test_the_nearest_press_stands_in_and_the_verdict_says_so():
     found = bridged(0.25, 0.5)
-    assert found._changes[press_name(GLUE, effect_of(GLUE).points[-1])][0, 0] == 0.5
+    assert found._changes[press_name(GLUE, candidate_effect(GLUE).points[-1])][0, 0] == 0.5
     assert list(found.shortfalls.values()) == [
         "No equilibrium with property-error (medium2) at modulus_factor = 2: "
         "its press at modulus_factor = 1.5 is used instead."
@@ -57,9 +57,9 @@ def test_a_layer_whose_memory_has_no_equilibrium_is_left_out_and_told(monkeypatc
     monkeypatch.setattr(prepared, "run_all", run_all)
     rig = model()
     base = SimpleNamespace(model=rig)
-    presses = SimpleNamespace(bases=(base, base), tet_mesh=None)
+    presses = SimpleNamespace(baseline_jobs=(base, base), tet_mesh=None)
     before = SimpleNamespace(model=rig, depth_mm=0.1, presses=presses, shortfalls={}, _executor=None)
-    reduction, outputs = Prepared._reduced(before, [base], lambda *_: None)
+    reduction, outputs = Prepared._reduce(before, [base], lambda *_: None)
     assert [len(layers) for layers in asked] == [4, 3, 2]
     assert reduction.relaxing == asked[-1]
     assert len(outputs) == 1

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnose.engines.segment.presses import SHARES as SHARES_OF_CHANGES
+from diagnose.engines.segment.presses import DEPTH_SHARES as SHARES_OF_CHANGES
 from diagnose.forward import Setting
 from softdot.config.rig import load_rig
 from softdot.diagnosis.engine import engine_for
@@ -62,7 +62,7 @@ def test_a_medium_of_twice_the_modulus_changes_force_and_charge_alike(tmp_path):
     told.prepare([stiffer], silent)
     twice = Setting(stiffer, tuple(np.log(2.0) if one.name == "modulus" else 0.0 for one in stiffer.coordinates))
     assert stiffer.parameters(twice.values)["modulus_factor"] == pytest.approx(2.0)
-    mine = told.prepared.change((0.0, 0.0), [twice])[:, [0, 2]]
+    mine = told.prepared.table_change((0.0, 0.0), [twice])[:, [0, 2]]
     depths = np.array(SHARES_OF_CHANGES) * told.prepared.depth_mm
     twice_as_stiff = applied(baseline(bench), bench, {"modulus-medium2": 20.0}).made
     before, after = hidden(bench.made, depths), hidden(twice_as_stiff, depths)
@@ -79,7 +79,7 @@ def test_a_base_that_has_come_apart_from_its_rims_changes_force_and_charge_alike
     setting = Setting(loose, tuple(0.5 if one.name == "rim" else 0.0 for one in loose.coordinates))
     told.prepare([loose], silent)
     told.refine([setting], silent)
-    mine = told.prepared.change((0.0, 0.0), [setting])[:, [0, 2]]
+    mine = told.prepared.table_change((0.0, 0.0), [setting])[:, [0, 2]]
     depths = np.array(SHARES_OF_CHANGES) * told.prepared.depth_mm
     half_loose = applied(baseline(bench), bench, {"loose-base": 10.0}).made
     before, after = hidden(bench.made, depths), hidden(half_loose, depths)
@@ -93,7 +93,7 @@ def test_force_and_every_charge_of_several_electrodes_agree_wherever_the_dot_sta
     """Charges within the stated error of the largest of them, as the model's error is one of the film."""
     bench = BENCHES["row-free"]
     told = engine_of(bench, tmp_path)
-    prepared, _ = told.stands.at((place_mm, 0.0))
+    prepared, _ = told.stands.prepared_at((place_mm, 0.0))
     depths = SHARES * bench.deepest_mm
     table, of = prepared.fit.table[:, 0], np.linspace(0.0, prepared.depth_mm, len(prepared.fit.table))
     mine = np.column_stack([np.interp(depths, of, table[:, n]) for n in (0, 2, 3, 4)])

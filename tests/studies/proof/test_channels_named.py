@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnose.engines.segment.drive import drive_of
-from diagnose.engines.segment.response import FilmPlate, Mechanics, shown
+from diagnose.engines.segment.drive import model_drive
+from diagnose.engines.segment.response import FilmPlate, Mechanics, channel_signals
 from diagnose.inference.diagnose import diagnose
 from diagnose.vocabulary.base import candidates_of_segment
 from diagnose.vocabulary.scene import Scene
@@ -58,10 +58,10 @@ class Known:
         run = self.recording.runs[number]
         on = [setting.candidate.as_mechanism(setting.values) for setting in settings if any(setting.values)]
         model = with_mechanisms(replace(self.model, readout=run.readout), on)
-        drive = drive_of(run, self.recording.phases[number])
+        drive = model_drive(run, self.recording.phases[number])
         course = pressed(replace(BENCH.made, offset_mm=run.dot_offset_mm[0])).at(np.maximum(drive.values, 0.0))
         found = Mechanics(drive.values, course.force_N, course.area_mm2, 1e-12 * course.charge_pC)
-        return shown(run, run.answers, drive, drive.values, found, self.film, model)
+        return channel_signals(run, run.answers, drive, drive.values, found, self.film, model)
 
 
 def told(effect, strength, folder, among=()):
