@@ -11,7 +11,7 @@ import numpy as np
 from diagnose.fit.levenberg_marquardt import Patience, minimised
 from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.nuisances import slope_by_step
-from diagnose.fit.observed_model import STEP, ObservedModel
+from diagnose.fit.observed_model import SLOPE_STEP_SHARE, ObservedModel
 from diagnose.forward import Candidate, Coordinate, Setting
 from foundation.arrays import Floats
 
@@ -55,14 +55,14 @@ class Descent:
             predicted = self.vector(values)
         except ValueError:
             return Place(values, self.origin, np.zeros(int(self.system.informative.sum())), np.inf)
-        left = self.system.weighted(self.origin - predicted)
+        left = self.system.weighted_rows(self.origin - predicted)
         return Place(values, predicted, left, 0.5 * self.system.quadratic.square(left))
 
     def slopes(self, place: Place) -> Floats:
         """(n, q) change per unit of each value, by differences towards the inside, or where the model has an answer."""
         columns = []
         for number, coordinate in enumerate(coordinates(self.candidates)):
-            step = STEP * max(min(map(abs, coordinate.starts)), abs(place.values[number]))
+            step = SLOPE_STEP_SHARE * max(min(map(abs, coordinate.starts)), abs(place.values[number]))
             step = -step if place.values[number] + step > coordinate.high else step
             columns.append(self._slope(place, number, step))
         return np.column_stack(columns)
@@ -90,8 +90,8 @@ def descended(problem: Descent, start: Floats, least: float = LEAST_GAIN) -> tup
     slopes_at = lru_cache(maxsize=1)(problem.slopes)
 
     def expansion(here: Place) -> tuple[Floats, Floats]:
-        columns = problem.system.weighted(slopes_at(here))
-        cleared = problem.system.quadratic.cleared(columns)
+        columns = problem.system.weighted_rows(slopes_at(here))
+        cleared = problem.system.quadratic.apply_inverse(columns)
         return columns.T @ cleared, cleared.T @ here.left
 
     patience = Patience(ITERATIONS, least, STILL)

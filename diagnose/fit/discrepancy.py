@@ -1,4 +1,4 @@
-"""What a model may be wrong by without lacking physics: columns smooth over a press, and a variance for the rest.
+"""Errors of a model that lacks no physics: columns smooth over a press, and a variance for the rest.
 
 A signal with relative error sigma is taken as signal times (1 + sigma m(t)), with m a random function over each press.
 Its smooth part is a few cosines over the press, common to the presses of a run (columns with prior sigma). What no
@@ -15,15 +15,15 @@ from foundation.arrays import Floats
 
 FORM_ERROR = 0.05
 """One sigma by which the effect of a mechanism may differ from that of the right one by its law alone."""
-COSINES = 3
-Relative = Sequence[float]
-"""One sigma per channel, in the order of the samples' channels."""
+COSINES_PER_PRESS = 3
+RelativeErrors = Sequence[float]
+"""Relative error of each channel, one sigma, in the order of the samples' channels."""
 
 
-def of_the_film(signals: Sequence[Signals]) -> list[Signals]:
-    """The signals that a model's own error is relative to: each its own, of several voltages the largest of its run.
+def error_scale_signals(signals: Sequence[Signals]) -> list[Signals]:
+    """Signals that a model's own error is relative to: for a voltage the largest of its run, else the signal itself.
 
-    They come from one field of stress, whose error an electrode that collects next to nothing has as well.
+    Voltages come from one field of stress, whose error an electrode that collects next to nothing has as well.
     """
     found: list[Signals] = []
     for of_run in signals:
@@ -33,8 +33,11 @@ def of_the_film(signals: Sequence[Signals]) -> list[Signals]:
     return found
 
 
-def columns(samples: Samples, signals: Sequence[Signals], relative: Relative) -> tuple[Floats, Floats]:
-    """Columns (n, k) and their prior sigmas (k,): each block times low cosines, and each channel as a whole."""
+def smooth_columns(samples: Samples, signals: Sequence[Signals], relative: RelativeErrors) -> tuple[Floats, Floats]:
+    """Columns (n, k) of a smooth error and their prior sigmas (k,).
+
+    Each block times low cosines, and each channel as a whole.
+    """
     found: list[Floats] = []
     sigma: list[float] = []
     whole: dict[str, Floats] = {}
@@ -42,23 +45,23 @@ def columns(samples: Samples, signals: Sequence[Signals], relative: Relative) ->
         size = relative[samples.channels.index(block.channel)]
         if size == 0.0:
             continue
-        waves = _waves(samples, block.run) * signals[block.run][block.channel][:, None]
-        own = samples.of_block(block, block.whitening(waves))
+        waves = _press_cosines(samples, block.run) * signals[block.run][block.channel][:, None]
+        own = samples.block_vector(block, block.whitening(waves))
         found += list(own.T)
-        sigma += [size] * COSINES
+        sigma += [size] * COSINES_PER_PRESS
         whole[block.channel] = whole.get(block.channel, np.zeros(len(samples))) + own[:, 0]
     found += list(whole.values())
     sigma += [relative[samples.channels.index(channel)] for channel in whole]
     return (np.column_stack(found) if found else np.zeros((len(samples), 0))), np.array(sigma)
 
 
-def repeated(samples: Samples, signals: Sequence[Signals], relative: Relative) -> tuple[Floats, Floats]:
+def depth_columns(samples: Samples, signals: Sequence[Signals], relative: RelativeErrors) -> tuple[Floats, Floats]:
     """Columns (n, k) and their prior sigmas (k,) of an error over depth, which is the same in all runs.
 
     Low cosines of each channel over its range, which stands for the depth as it grows with it; the constant one is
-    among columns().
+    among smooth_columns.
     """
-    orders = np.arange(1, COSINES)
+    orders = np.arange(1, COSINES_PER_PRESS)
     found = {name: np.zeros((len(samples), len(orders))) for name in samples.channels}
     largest = {
         name: max(float(np.abs(of_run[name]).max(initial=0.0)) for of_run in signals if name in of_run)
@@ -68,18 +71,18 @@ def repeated(samples: Samples, signals: Sequence[Signals], relative: Relative) -
         signal = signals[block.run][block.channel]
         share = np.abs(signal) / max(largest[block.channel], np.finfo(float).tiny)
         waves = np.cos(np.pi * share[:, None] * orders) * signal[:, None]
-        found[block.channel] += samples.of_block(block, block.whitening(waves))
+        found[block.channel] += samples.block_vector(block, block.whitening(waves))
     known = [name for name, size in zip(samples.channels, relative, strict=True) if size > 0.0]
     sigma = [size for size in relative if size > 0.0]
     columns = np.column_stack([found[name] for name in known]) if known else np.zeros((len(samples), 0))
     return columns, np.repeat(sigma, len(orders))
 
 
-def allowance(samples: Samples, vector: Floats, relative: Relative) -> Floats:
-    """Variance (n,) that is added to the coefficients of a signal (n,).
+def rough_variance(samples: Samples, vector: Floats, relative: RelativeErrors) -> Floats:
+    """Variance (n,) that the error of a signal (n,) adds to its coefficients beyond the smooth columns.
 
-    Half of the expected square is where the signal is (its cell), half is spread over its piece with the spectrum of
-    a random walk: a model-form error is rougher than the signal.
+    Half of the expected square is where the signal is (its cell), half is spread over its piece with the spectrum of a
+    random walk: a model-form error is rougher than the signal.
     """
     size = np.asarray(relative)[samples.kind[samples.block_of]] ** 2
     square = vector**2
@@ -90,11 +93,11 @@ def allowance(samples: Samples, vector: Floats, relative: Relative) -> Floats:
     return np.asarray(size * 0.5 * (here + spread))
 
 
-def _waves(samples: Samples, run: int) -> Floats:
-    """Cosines (t, COSINES) over each press of a run, from its touch to its end."""
+def _press_cosines(samples: Samples, run: int) -> Floats:
+    """Cosines (t, COSINES_PER_PRESS) over each press of a run, from its touch to its end."""
     presses, count = samples.recording.phases[run].presses, len(samples.recording.runs[run].time_s)
     place = np.zeros(count)
     for press in presses:
         length = max(press.end - press.touch, 1)
         place[press.touch : press.end] = (np.arange(press.end - press.touch) + 0.5) / length
-    return np.cos(np.pi * place[:, None] * np.arange(COSINES))
+    return np.cos(np.pi * place[:, None] * np.arange(COSINES_PER_PRESS))

@@ -8,15 +8,14 @@ from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.samples import Samples
 from foundation.arrays import Bools, Floats
 
-SEEN = 0.3  # standard deviations: what no sensitivity, as large as all the residual, can make is not looked at
+INFORMATIVE_SIGMAS = 0.3  # rows in which no sensitivity, as large as all the residual, makes more are not looked at
 
 
 def informative_rows(samples: Samples, system: LinearisedSystem, sensitivities: Sequence[Floats]) -> Bools:
-    """Coefficients (n,) in which a column of the (n, k), scaled to the length of the residual, shows at all.
+    """Flags (n,) of coefficients in which a column of any (n, k), scaled to the length of the residual, shows at all.
 
     A nuisance parameter is scaled to its prior where that is less. Only the length of the residual counts, not its
-    shape, so
-    that no test is biased.
+    shape, so that no test is biased.
     """
     weight = system.weight
     length = float(np.linalg.norm(system.residual * weight))
@@ -29,7 +28,7 @@ def informative_rows(samples: Samples, system: LinearisedSystem, sensitivities: 
         size = np.linalg.norm(shown, axis=0)
         scale = np.minimum(sigma, np.divide(length, size, out=np.zeros(len(size)), where=size > 0.0))
         largest = np.maximum(largest, (shown * scale).max(axis=1, initial=0.0))
-    kept = largest > SEEN
+    kept = largest > INFORMATIVE_SIGMAS
     for label in np.unique(samples.fold):  # every press keeps something to be judged by
         own = samples.fold == label
         if not kept[own].any():

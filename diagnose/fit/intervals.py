@@ -17,94 +17,110 @@ from diagnose.findings import Interval
 from diagnose.fit import discrepancy
 from diagnose.fit.descent import bounds, descent, settings
 from diagnose.fit.levenberg_marquardt import scales
-from diagnose.fit.linearised_system import relative
+from diagnose.fit.linearised_system import engine_errors
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted
 from diagnose.forward import Candidate, Setting
 from foundation.arrays import Bools, Floats
 
-LEVEL = 0.9
-STEPS = 8
-CLOSE = 0.01  # of the half width: another step is not worth it
-SMALL = 1e-4  # of the width of a coordinate's range, for slopes of g
+INTERVAL_LEVEL = 0.9
+MAX_STEPS_TO_END = 8
+NEGLIGIBLE_STEP_SHARE = 0.01  # of the half width: another step is not worth it
+GRADIENT_STEP_SHARE = 1e-4  # of the width of a coordinate's range, for slopes of g
 
 Function = Callable[[Floats], float]
 
 
-def intervals(model: ObservedModel, fit: Fitted) -> tuple[Mapping[str, Interval], ...]:
-    """For each mechanism of a fit, its parameters and derived quantities by name.
+def profile_intervals(model: ObservedModel, fit: Fitted) -> tuple[Mapping[str, Interval], ...]:
+    """Profile intervals of the parameters and derived quantities of each mechanism of a fit, by name.
 
     All leave room for what every rig has a little of; the low end of a gap or of friction also for what of it is that.
     """
-    fit = _as_every_rig(model, _model_may_err(model, _law_may_differ(fit)))
-    return tuple(_of_mechanism(model, fit, number) for number in range(len(fit.candidates)))
+    fit = _with_everyday_flaws(model, _with_depth_error(model, _with_law_error(fit)))
+    return tuple(_mechanism_intervals(model, fit, number) for number in range(len(fit.candidates)))
 
 
-def points(fit: Fitted) -> tuple[Mapping[str, Interval], ...]:
-    """The fitted values alone, as intervals without width."""
+def point_intervals(fit: Fitted) -> tuple[Mapping[str, Interval], ...]:
+    """Fitted values of each mechanism by name, as intervals without width."""
     return tuple(
-        {name: Interval(value, value, value, _unit(one.candidate, name)) for name, value in _numbers(one).items()}
+        {
+            name: Interval(value, value, value, _parameter_unit(one.candidate, name))
+            for name, value in _quantities(one).items()
+        }
         for one in fit.settings
     )
 
 
-def _law_may_differ(fit: Fitted) -> Fitted:
-    """With the model-form error at its largest, where the law is one of several: those have derived quantities."""
+def _with_law_error(fit: Fitted) -> Fitted:
+    """Fit with the model-form error at its largest, where the law is one of several: those have derived quantities."""
     if not any(one.candidate.derived(one.values) for one in fit.settings):
         return fit
     return replace(fit, system=replace(fit.system, form_error=fit.largest_form_error))
 
 
-def _model_may_err(model: ObservedModel, fit: Fitted) -> Fitted:
-    """With an error over depth that no further run averages out, as all have it. A name needs no such allowance."""
+def _with_depth_error(model: ObservedModel, fit: Fitted) -> Fitted:
+    """Fit with an error over depth that no further run averages out, as all runs have it.
+
+    A name needs no such allowance.
+    """
     shown = model.signals(fit.system.values, fit.settings)
-    columns, sigma = discrepancy.repeated(model.samples, discrepancy.of_the_film(shown), relative(model))
+    columns, sigma = discrepancy.depth_columns(
+        model.samples, discrepancy.error_scale_signals(shown), engine_errors(model)
+    )
     return replace(fit, system=fit.system.with_nuisance_columns(columns, sigma))
 
 
-def _as_every_rig(model: ObservedModel, fit: Fitted) -> Fitted:
-    """With what a careful laboratory has too, softness at the first touch or friction, of either sign.
+def _with_everyday_flaws(model: ObservedModel, fit: Fitted) -> Fitted:
+    """Fit with columns for what a careful laboratory has too, softness at the first touch or friction, of either sign.
 
     It is no finding, but takes the place of a part of what is.
     """
     more = [one for one in model.engine.candidates if one.everyday and one not in fit.candidates]
-    columns = [column for one in more for column in _a_little(model, fit, one)]
+    columns = [column for one in more for column in _everyday_changes(model, fit, one)]
     if not columns:
         return fit
     return replace(fit, system=fit.system.with_nuisance_columns(np.column_stack(columns), np.ones(len(columns))))
 
 
-def _a_little(model: ObservedModel, fit: Fitted, candidate: Candidate) -> Iterator[Floats]:
-    """Changes (n,), one for each coordinate, by as much as is usual; together their squares are that of one."""
+def _everyday_changes(model: ObservedModel, fit: Fitted, candidate: Candidate) -> Iterator[Floats]:
+    """Changes (n,) by an everyday amount of a candidate, one for each coordinate.
+
+    Together their squares are that of one such amount.
+    """
     without, count = model.vector(fit.system.values, fit.settings), len(candidate.coordinates)
     for number, coordinate in enumerate(candidate.coordinates):
         at = np.where(np.arange(count) == number, coordinate.starts[0], 0.0)
         one = Setting(candidate, tuple(at.tolist()))
-        found = _numbers(one)
+        found = _quantities(one)
         share = min(usual / found[name] for name, usual in candidate.everyday.items())
         with suppress(ValueError):
             change = model.vector(fit.system.values, [*fit.settings, one]) - without
             yield np.asarray(share / np.sqrt(count) * change)
 
 
-def _of_mechanism(model: ObservedModel, fit: Fitted, number: int) -> Mapping[str, Interval]:
-    def function(name: str) -> Function:  # what a simpler law has no number for is 0: the quality of one RC stage
-        return lambda values: _numbers(settings(fit.candidates, values)[number]).get(name, 0.0)
+def _mechanism_intervals(model: ObservedModel, fit: Fitted, number: int) -> Mapping[str, Interval]:
+    """Profile intervals of one mechanism of a fit, by name of the parameter or derived quantity."""
 
-    names = _numbers(fit.settings[number])
+    def function(name: str) -> Function:  # what a simpler law has no number for is 0: the quality of one RC stage
+        return lambda values: _quantities(settings(fit.candidates, values)[number]).get(name, 0.0)
+
+    names = _quantities(fit.settings[number])
     candidate = fit.candidates[number]
-    found = {name: _interval(model, fit, function(name), _unit(candidate, name)) for name in names}
+    found = {name: _interval(model, fit, function(name), _parameter_unit(candidate, name)) for name in names}
     less = {name: max(found[name].low - usual, 0.0) for name, usual in candidate.everyday.items()}
     return {name: replace(one, low=less.get(name, one.low)) for name, one in found.items()}
 
 
-def _unit(candidate: Candidate, name: str) -> str:
-    """Of relative_moduli[0] as of relative_moduli."""
+def _parameter_unit(candidate: Candidate, name: str) -> str:
+    """Unit of a parameter; relative_moduli[0] has that of relative_moduli."""
     return candidate.units.get(name.partition("[")[0], "")
 
 
-def _numbers(one: Setting) -> dict[str, float]:
-    """Parameters and derived quantities by name, lists taken apart: name[0], name[1]; one value keeps its name."""
+def _quantities(one: Setting) -> dict[str, float]:
+    """Parameters and derived quantities of a setting by name.
+
+    Lists are taken apart: name[0], name[1]; a single value keeps its name.
+    """
     values = {**one.candidate.parameters(one.values), **one.candidate.derived(one.values)}
     flat: dict[str, float] = {}
     for name, value in values.items():
@@ -116,39 +132,42 @@ def _numbers(one: Setting) -> dict[str, float]:
 
 
 def _interval(model: ObservedModel, fit: Fitted, function: Function, unit: str) -> Interval:
+    """Profile interval of a function of the fitted values; fixed where it does not depend on them."""
     value = function(fit.values)
     if not _gradient(function, fit.values, bounds(fit.candidates)).any():
         return Interval(value, value, value, unit, fixed=True)
-    ends = [_end(model, fit, function, side) for side in (-1.0, 1.0)]
+    ends = [_interval_end(model, fit, function, side) for side in (-1.0, 1.0)]
     low, high = min(value, ends[0][0]), max(value, ends[1][0])
     return Interval(value, low, high, unit, ends[0][1], ends[1][1])
 
 
-def _end(model: ObservedModel, fit: Fitted, function: Function, side: float) -> tuple[float, bool]:
-    """The end of g on one side, and whether a coordinate stands at its bound there."""
+def _interval_end(model: ObservedModel, fit: Fitted, function: Function, side: float) -> tuple[float, bool]:
+    """End of g on one side, and whether a coordinate stands at its bound there."""
     limits, best = bounds(fit.candidates), function(fit.values)
     problem = descent(model, fit.system, fit.candidates, fit.settings)
     here, reached = problem.at(fit.values), best
-    allowed = here.cost + 0.5 * float(chi2.ppf(LEVEL, 1))
-    for _ in range(STEPS):
+    allowed = here.cost + 0.5 * float(chi2.ppf(INTERVAL_LEVEL, 1))
+    for _ in range(MAX_STEPS_TO_END):
         slope = side * _gradient(function, here.values, limits)
         if not slope.any():
             break
-        columns = fit.system.weighted(problem.slopes(here))
-        cleared = fit.system.quadratic.cleared(columns)
-        step = _step(columns.T @ cleared, cleared.T @ here.left, slope, allowed - here.cost, here.values, limits)
+        columns = fit.system.weighted_rows(problem.slopes(here))
+        cleared = fit.system.quadratic.apply_inverse(columns)
+        step = _step_to_end(columns.T @ cleared, cleared.T @ here.left, slope, allowed - here.cost, here.values, limits)
         after = problem.at(np.clip(here.values + step, *limits.T))
         if not np.isfinite(after.cost):
             break
         here = after
         before, reached = reached, function(here.values)
-        if abs(reached - before) <= CLOSE * abs(reached - best):
+        if abs(reached - before) <= NEGLIGIBLE_STEP_SHARE * abs(reached - best):
             break
     return reached, bool(np.any((here.values <= limits[:, 0]) | (here.values >= limits[:, 1])))
 
 
-def _step(hessian: Floats, gradient: Floats, slope: Floats, room: float, values: Floats, limits: Floats) -> Floats:
-    """The farthest step along a slope (q,) that a quadratic log-likelihood allows; gradient : (q,) of the likelihood.
+def _step_to_end(
+    hessian: Floats, gradient: Floats, slope: Floats, room: float, values: Floats, limits: Floats
+) -> Floats:
+    """Farthest step (q,) along a slope (q,) that a quadratic log-likelihood allows; gradient (q,) : of the likelihood.
 
     Coordinates that would leave their bounds are held there, and the others are solved anew.
     """
@@ -176,10 +195,10 @@ def _step(hessian: Floats, gradient: Floats, slope: Floats, room: float, values:
 
 
 def _gradient(function: Function, values: Floats, limits: Floats) -> Floats:
-    """Slope (q,) of a function, by differences towards the inside."""
+    """Gradient (q,) of a function, by differences towards the inside of its limits (q, 2)."""
     slope, here = np.zeros(len(values)), function(values)
     for n in range(len(values)):
-        step = SMALL * (limits[n, 1] - limits[n, 0])
+        step = GRADIENT_STEP_SHARE * (limits[n, 1] - limits[n, 0])
         step = -step if values[n] + step > limits[n, 1] else step
         moved = values.copy()
         moved[n] += step

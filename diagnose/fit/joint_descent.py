@@ -35,7 +35,7 @@ class _Problem:
         self.model, self.system, self.candidates = model, system, tuple(candidates)
         self.count = len(bounds(candidates))
         self.nuisance_design = Quadratic(
-            system.weighted(system.nuisance_design[:, len(system.values) :]), system.sigma[len(system.values) :]
+            system.weighted_rows(system.nuisance_design[:, len(system.values) :]), system.sigma[len(system.values) :]
         )
         self.precision = np.concatenate([np.zeros(self.count), 1.0 / model.sigma**2])
         own = np.array([_limits(nuisance) for nuisance in model.nuisances]).reshape(-1, 2)
@@ -47,14 +47,14 @@ class _Problem:
             predicted = self.model.vector(point[self.count :], settings(self.candidates, point[: self.count]))
         except ValueError:
             return Place(point, np.zeros(0), np.zeros(int(self.system.informative.sum())), np.inf)
-        left = self.system.weighted(self.model.samples.recorded - predicted)
+        left = self.system.weighted_rows(self.model.samples.recorded_vector - predicted)
         cost = 0.5 * self.nuisance_design.square(left) + 0.5 * float(self.precision @ point**2)
         return Place(point, predicted, left, cost)
 
     def expansion(self, here: Place) -> tuple[Floats, Floats]:
         """Hessian (q + p, q + p) and downhill gradient of the cost."""
         columns = self.columns(here.values)
-        cleared = self.nuisance_design.cleared(columns)
+        cleared = self.nuisance_design.apply_inverse(columns)
         gradient = cleared.T @ here.left - self.precision * here.values
         return columns.T @ cleared + np.diag(self.precision), gradient
 
@@ -65,7 +65,7 @@ class _Problem:
         problem = descent(self.model, _at(self.system, nuisances), self.candidates, on)
         predicted = self.model.vector(nuisances, on)
         slopes = problem.slopes(Place(values, predicted, np.zeros(0), 0.0))
-        return self.system.weighted(np.column_stack([slopes, self.model.tangents(nuisances, on)]))
+        return self.system.weighted_rows(np.column_stack([slopes, self.model.tangents(nuisances, on)]))
 
 
 def _at(system: LinearisedSystem, nuisances: Floats) -> LinearisedSystem:

@@ -9,31 +9,31 @@ from scipy.linalg import cho_factor, cho_solve
 
 from foundation.arrays import Floats
 
-TINY = np.finfo(float).tiny ** 0.25
-RIDGE = 1e-12  # relative to the square of a column's length: parallel columns without a prior
+SMALLEST_PRIOR = np.finfo(float).tiny ** 0.25
+RELATIVE_RIDGE = 1e-12  # relative to the square of a column's length: parallel columns without a prior
 
 
 class Quadratic:
-    """a' S^-1 b for vectors in the whitened space."""
+    """The quadratic form a' S^-1 b of vectors in the whitened space, with nuisances integrated out."""
 
     def __init__(self, columns: Floats, sigma: Floats) -> None:
-        """columns : (n, k) whitened. sigma : (k,) prior deviations, inf for none."""
+        """Factorise the form. columns : (n, k) whitened. sigma : (k,) prior deviations, inf for none."""
         length = np.where(sigma > 0.0, np.linalg.norm(columns, axis=0), 0.0)
         self._scale = np.where(length > 0.0, length, 1.0)
         self.columns = columns / self._scale
         self.columns[:, length == 0.0] = 0.0
-        prior = np.where(length > 0.0, 1.0 / np.maximum(sigma * self._scale, TINY) ** 2 + RIDGE, 1.0)
+        prior = np.where(length > 0.0, 1.0 / np.maximum(sigma * self._scale, SMALLEST_PRIOR) ** 2 + RELATIVE_RIDGE, 1.0)
         gram = self.columns.T @ self.columns + np.diag(prior)
         self._factor = cho_factor(gram, lower=True)
         known = np.isfinite(sigma) & (length > 0.0)
         self.log_scale = float(np.log(np.diag(self._factor[0])).sum() + np.log((sigma * self._scale)[known]).sum())
 
-    def product(self, a: Floats, b: Floats) -> Floats:
-        """(p, q) inner products of columns (n, p) and (n, q)."""
+    def inner_products(self, a: Floats, b: Floats) -> Floats:
+        """Inner products (p, q) of columns (n, p) and (n, q)."""
         return np.asarray(a.T @ b - (self.columns.T @ a).T @ cho_solve(self._factor, self.columns.T @ b))
 
     def square(self, a: Floats) -> float:
-        """a' S^-1 a of one vector (n,)."""
+        """Square a' S^-1 a of one vector (n,)."""
         along = self.columns.T @ a
         return float(a @ a - along @ cho_solve(self._factor, along))
 
@@ -46,6 +46,6 @@ class Quadratic:
         inverse = cho_solve(self._factor, np.eye(len(self._scale)))
         return np.asarray(np.diag(inverse) / self._scale**2)
 
-    def cleared(self, a: Floats) -> Floats:
-        """S^-1 a, (n,) or (n, q)."""
+    def apply_inverse(self, a: Floats) -> Floats:
+        """Product S^-1 a with vectors (n,) or (n, q)."""
         return np.asarray(a - self.columns @ cho_solve(self._factor, self.columns.T @ a))

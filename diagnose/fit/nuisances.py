@@ -1,4 +1,4 @@
-"""What may float without counting as physics, run by run as declared, and how the model answers to it."""
+"""Nuisance parameters, which float without counting as physics, run by run as declared, and the model's answer to them."""
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -19,9 +19,9 @@ CLOCKS = ("lag_s", "clock_ratio")
 class Nuisance:
     """One number that floats. run : whose it is, None where all runs share it.
 
-    channel : whose it is, where each of several voltages has its own; else None.
-    sigma : of its prior, inf for none. candidate : through which the engine answers, None for what happens behind it.
-    coordinate : its number there.
+    channel : whose it is, where each of several voltages has its own; else None. sigma : deviation of its prior, inf
+    for none. candidate : through which the engine answers, None for what happens behind it. coordinate : its number
+    there.
     """
 
     name: str
@@ -32,11 +32,11 @@ class Nuisance:
     channel: str | None = None
 
     def acts_on(self, channel: str) -> bool:
-        """Whether a channel has it, as far as that is told apart."""
+        """Whether the nuisance acts on a channel, as far as channels are told apart."""
         return self.channel in (None, channel)
 
-    def stated(self, value: float) -> float:
-        """The value as rig.toml states it: of a factor its relative error, whatever the coordinate."""
+    def stated_value(self, value: float) -> float:
+        """Value as rig.toml states it: of a factor its relative error, whatever the coordinate."""
         if self.candidate is None:
             return value
         at = np.zeros(len(self.candidate.coordinates))
@@ -45,14 +45,14 @@ class Nuisance:
         return float(factors[0]) - 1.0 if factors else value
 
 
-def nuisances(recording: Recording, engine: Engine) -> tuple[Nuisance, ...]:
-    """All that rig.toml declares and the engine knows, and what the engine itself leaves free."""
+def declared_nuisances(recording: Recording, engine: Engine) -> tuple[Nuisance, ...]:
+    """Nuisances that rig.toml declares and the engine knows, and those that the engine itself leaves free."""
     found: list[Nuisance] = []
     shared: dict[str, float] = {}
     for number, run in enumerate(recording.runs):
         for name, sigma in run.nuisance.items():
-            if behind(run, name):
-                found += [Nuisance(name, number, sigma, channel=channel) for channel in owners(run, name)]
+            if acts_behind_model(run, name):
+                found += [Nuisance(name, number, sigma, channel=channel) for channel in owning_channels(run, name)]
             elif name in GAINS or name in OFFSETS or name in CLOCKS:
                 candidate = engine.nuisance(name)
                 found += [Nuisance(name, number, sigma, candidate)] if candidate is not None else []
@@ -67,7 +67,7 @@ def nuisances(recording: Recording, engine: Engine) -> tuple[Nuisance, ...]:
     return tuple(found)
 
 
-def behind(run: Run, name: str) -> bool:
+def acts_behind_model(run: Run, name: str) -> bool:
     """Whether a nuisance acts behind the model, on a channel that this run explains."""
     unit = GAINS.get(name) or OFFSETS.get(name)
     if unit is not None:
@@ -75,23 +75,26 @@ def behind(run: Run, name: str) -> bool:
     return name in CLOCKS
 
 
-def owners(run: Run, name: str) -> Sequence[str | None]:
-    """Channels of a run that have a nuisance behind the model each for itself: several amplifiers differ."""
+def owning_channels(run: Run, name: str) -> Sequence[str | None]:
+    """Channels of a run that have a nuisance behind the model each for itself, as several amplifiers differ.
+
+    [None] where all share it.
+    """
     unit = GAINS.get(name) or OFFSETS.get(name)
     own = len(run.voltages) > 1 and (unit == "V" or name == "lag_s")
     return run.voltages if own else [None]
 
 
-def late(run: Run, channel: str) -> bool:
+def is_on_lagging_clock(run: Run, channel: str) -> bool:
     """Whether a channel is on the clock that lags: voltages, or all answers where there are none."""
     return channel.startswith("voltage") or not run.voltages
 
 
-def observed(run: Run, channel: str, values: Floats, own: dict[str, float]) -> Floats:
-    """A predicted channel (t,) as the instruments show it, with nuisances by name."""
+def instrument_signal(run: Run, channel: str, values: Floats, own: dict[str, float]) -> Floats:
+    """Channel (t,) as the instruments show a predicted one, with nuisances by name."""
     unit = channel.rpartition("_")[2]
     lag, ratio = own.get("lag_s", 0.0), own.get("clock_ratio", 0.0)
-    if late(run, channel) and (lag or ratio):
+    if is_on_lagging_clock(run, channel) and (lag or ratio):
         time = run.time_s
         values = np.interp(time - lag - ratio * (time - time[0]), time, values)
     gain = sum(own.get(name, 0.0) for name, of in GAINS.items() if of == unit)
@@ -99,22 +102,22 @@ def observed(run: Run, channel: str, values: Floats, own: dict[str, float]) -> F
     return np.asarray((1.0 + gain) * values + offset)
 
 
-def tangent(run: Run, channel: str, shown: Floats, name: str, own: dict[str, float]) -> Floats | None:
-    """Change (t,) of a channel as shown per unit of a nuisance behind the model; None where there is none."""
+def instrument_tangent(run: Run, channel: str, shown: Floats, name: str, own: dict[str, float]) -> Floats | None:
+    """Change (t,) of a channel as shown per unit of a nuisance behind the model; None where it does not act on it."""
     unit = channel.rpartition("_")[2]
     if name in GAINS and GAINS[name] == unit:
         offset = sum(own.get(other, 0.0) for other, of in OFFSETS.items() if of == unit)
         return np.asarray((shown - offset) / (1.0 + own.get(name, 0.0)))
     if name in OFFSETS and OFFSETS[name] == unit:
         return np.ones(len(shown))
-    if name in CLOCKS and late(run, channel):
-        slope = -_slope(run, shown)
+    if name in CLOCKS and is_on_lagging_clock(run, channel):
+        slope = -_time_derivative(run, shown)
         return slope if name == "lag_s" else np.asarray(slope * (run.time_s - run.time_s[0]))
     return None
 
 
-def _slope(run: Run, values: Floats) -> Floats:
-    """Time derivative (t,), piece by piece."""
+def _time_derivative(run: Run, values: Floats) -> Floats:
+    """Time derivative (t,) of values (t,), piece by piece of even sampling."""
     slope = np.zeros(len(values))
     for piece in run.pieces:
         if piece.stop - piece.start > 1:
@@ -122,8 +125,8 @@ def _slope(run: Run, values: Floats) -> Floats:
     return slope
 
 
-def by_name(all_of_them: Sequence[Nuisance], values: Floats, run: int, channel: str) -> dict[str, float]:
-    """Values of the nuisances behind the model in one channel of one run."""
+def values_by_name(all_of_them: Sequence[Nuisance], values: Floats, run: int, channel: str) -> dict[str, float]:
+    """Values of the nuisances behind the model in one channel of one run, by name."""
     return {
         nuisance.name: float(value)
         for nuisance, value in zip(all_of_them, values, strict=True)
@@ -132,9 +135,9 @@ def by_name(all_of_them: Sequence[Nuisance], values: Floats, run: int, channel: 
 
 
 def slope_by_step(change: Callable[[float], Floats], step: float, length: int) -> Floats:
-    """Change (length,) per unit of a value, by one step towards the side on which the model has an answer; else 0.
+    """Change (length,) per unit of a value, by one step towards the side on which the model has an answer.
 
-    change : of a step; ValueError where the model has no answer.
+    0 where it has none on either side. change : of a step; ValueError where the model has no answer.
     """
     for signed in (step, -step):
         with suppress(ValueError):

@@ -1,4 +1,4 @@
-"""The engine seen through the instruments: vectors of whitened coefficients for any mechanisms and nuisances."""
+"""An engine seen through the instruments: vectors of whitened coefficients for any mechanisms and nuisances."""
 
 from collections import OrderedDict
 from collections.abc import Sequence
@@ -6,65 +6,83 @@ from copy import copy
 
 import numpy as np
 
-from diagnose.fit.nuisances import Nuisance, by_name, nuisances, observed, slope_by_step, tangent
+from diagnose.fit.nuisances import (
+    Nuisance,
+    declared_nuisances,
+    instrument_signal,
+    instrument_tangent,
+    slope_by_step,
+    values_by_name,
+)
 from diagnose.fit.samples import Samples
 from diagnose.forward import Candidate, Engine, Setting, Signals
 from foundation.arrays import Floats
 
-REMEMBERED = 400  # predictions of one run
-STEP = 0.02  # of the first start of a coordinate, for slopes
-SHARES = (0.5, 0.25, 0.125)  # of a step of the nuisances
+MOST_REMEMBERED = 400  # predictions of one run
+SLOPE_STEP_SHARE = 0.02  # of the first start of a coordinate, for slopes
+STEP_SHARES = (0.5, 0.25, 0.125)  # of a step of the nuisances
 
 
 class ObservedModel:
-    """nuisances : in order. sigma : (p,) of their priors. tolerance : (n,) variance of what it may leave, see there."""
+    """An engine with the instruments of a recording. nuisances : in order. sigma : (p,) deviations of their priors.
+
+    tolerance : (n,) variance of the discrepancy that it may leave, see signal_discrepancy.py.
+    """
 
     def __init__(self, samples: Samples, engine: Engine) -> None:
         self.samples, self.engine = samples, engine
         self.tolerance = np.zeros(len(samples))
         self.runs = samples.recording.runs
-        self.nuisances: tuple[Nuisance, ...] = nuisances(samples.recording, engine)
+        self.nuisances: tuple[Nuisance, ...] = declared_nuisances(samples.recording, engine)
         self.sigma: Floats = np.array([nuisance.sigma for nuisance in self.nuisances])
         self._known: OrderedDict[tuple[object, ...], Signals] = OrderedDict()
 
-    def tolerating(self, variance: Floats) -> "ObservedModel":
-        """The same model that may leave a discrepancy of variance (n,)."""
+    def with_tolerance(self, variance: Floats) -> "ObservedModel":
+        """This model where it may leave a discrepancy of variance (n,)."""
         other = copy(self)
         other.tolerance = variance
         return other
 
-    def seen_as(self, samples: Samples) -> "ObservedModel":
-        """The same model of the same recording, whose samples are weighed by another noise."""
+    def with_samples(self, samples: Samples) -> "ObservedModel":
+        """This model of the same recording, whose samples are weighed by another noise."""
         other = copy(self)
         other.samples, other.tolerance = samples, np.zeros(len(samples))
         return other
 
-    def predicted(self, run: int, settings: Sequence[Setting]) -> Signals:
-        """The engine's answer, remembered."""
+    def engine_signals(self, run: int, settings: Sequence[Setting]) -> Signals:
+        """Signals of a run by the engine, remembered for the last settings. ValueError as the engine."""
         on = [s for s in settings if any(s.values)]
         key = (run, *((s.candidate.name, s.values) for s in on))
         if key not in self._known:
             self._known[key] = self.engine.predict(run, on)
-            if len(self._known) > REMEMBERED:
+            if len(self._known) > MOST_REMEMBERED:
                 self._known.popitem(last=False)
         self._known.move_to_end(key)
         return self._known[key]
 
     def signals(self, values: Floats, settings: Sequence[Setting] = ()) -> list[dict[str, Floats]]:
-        """What the instruments of every run show, for nuisances (p,) and mechanisms."""
-        return [self._shown(run, values, settings) for run in range(len(self.runs))]
+        """Signals that the instruments of every run show, for nuisances (p,) and mechanisms.
 
-    def imagined(self, run: int, drive: Floats, values: Floats, settings: Sequence[Setting]) -> dict[str, Floats]:
-        """What its instruments would show if the drive (t,) of a run had been another one. ValueError as the engine."""
+        ValueError as the engine.
+        """
+        return [self._run_signals(run, values, settings) for run in range(len(self.runs))]
+
+    def imagined_signals(
+        self, run: int, drive: Floats, values: Floats, settings: Sequence[Setting]
+    ) -> dict[str, Floats]:
+        """Signals that the instruments of a run would show under another drive (t,). ValueError as the engine."""
         of = self.runs[run]
-        raw = self.engine.imagine(of.with_drive(drive), [*self._settings(run, values), *settings])
+        raw = self.engine.imagine(of.with_drive(drive), [*self._nuisance_settings(run, values), *settings])
         told = (self.nuisances, values, run)
-        return {name: observed(of, name, raw[name], by_name(*told, name)) for name in of.answers}
+        return {name: instrument_signal(of, name, raw[name], values_by_name(*told, name)) for name in of.answers}
 
-    def answered(self, start: Floats, end: Floats, settings: Sequence[Setting]) -> Floats:
-        """Possible nuisances (p,) as far on a step from a start as there is an answer: a coupon's law may turn over."""
-        end = self.possible(end)
-        for values in (end, *(start + share * (end - start) for share in SHARES)):
+    def answerable_nuisances(self, start: Floats, end: Floats, settings: Sequence[Setting]) -> Floats:
+        """Possible nuisances (p,) as far on a step from start to end as the engine has an answer.
+
+        A coupon's law may turn over.
+        """
+        end = self.clip_to_bounds(end)
+        for values in (end, *(start + share * (end - start) for share in STEP_SHARES)):
             try:
                 self.signals(values, settings)
             except ValueError:
@@ -72,7 +90,7 @@ class ObservedModel:
             return values
         return start
 
-    def possible(self, values: Floats) -> Floats:
+    def clip_to_bounds(self, values: Floats) -> Floats:
         """Nuisances (p,) held within what the engine has an answer to."""
         held = values.copy()
         for number, nuisance in enumerate(self.nuisances):
@@ -82,27 +100,27 @@ class ObservedModel:
         return held
 
     def vector(self, values: Floats, settings: Sequence[Setting] = ()) -> Floats:
-        """What the instruments would show, whitened, (n,)."""
+        """Whitened coefficients (n,) of what the instruments show. ValueError as the engine."""
         return self.samples.coefficients(self.signals(values, settings))
 
     def tangents(self, values: Floats, settings: Sequence[Setting] = ()) -> Floats:
-        """Its change (n, p) per unit of each nuisance."""
+        """Change (n, p) of the whitened coefficients per unit of each nuisance."""
         columns = np.zeros((len(self.samples), len(self.nuisances)))
         shown = self.signals(values, settings)
         for number, nuisance in enumerate(self.nuisances):
             if nuisance.candidate is None:
-                columns[:, number] = self._behind(nuisance, values, shown)
+                columns[:, number] = self._column_behind_model(nuisance, values, shown)
             else:
-                columns[:, number] = self._through(number, nuisance, values, settings, shown)
+                columns[:, number] = self._column_through_engine(number, nuisance, values, settings, shown)
         return columns
 
-    def _shown(self, run: int, values: Floats, settings: Sequence[Setting]) -> dict[str, Floats]:
-        raw = self.predicted(run, [*self._settings(run, values), *settings])
+    def _run_signals(self, run: int, values: Floats, settings: Sequence[Setting]) -> dict[str, Floats]:
+        raw = self.engine_signals(run, [*self._nuisance_settings(run, values), *settings])
         of, told = self.runs[run], (self.nuisances, values, run)
-        return {name: observed(of, name, raw[name], by_name(*told, name)) for name in of.answers}
+        return {name: instrument_signal(of, name, raw[name], values_by_name(*told, name)) for name in of.answers}
 
-    def _settings(self, run: int, values: Floats) -> list[Setting]:
-        """Nuisances that the engine answers to."""
+    def _nuisance_settings(self, run: int, values: Floats) -> list[Setting]:
+        """Settings of the nuisances that the engine answers to, in one run."""
         at: dict[tuple[str, str], tuple[Candidate, list[float]]] = {}
         for nuisance, value in zip(self.nuisances, values, strict=True):
             if nuisance.candidate is not None and nuisance.run in (None, run):
@@ -110,24 +128,24 @@ class ObservedModel:
                 at.setdefault(nuisance.candidate.name, empty)[1][nuisance.coordinate] += float(value)
         return [Setting(candidate, tuple(own)) for candidate, own in at.values()]
 
-    def _behind(self, nuisance: Nuisance, values: Floats, shown: Sequence[Signals]) -> Floats:
-        """Column (n,) of a nuisance behind the model."""
+    def _column_behind_model(self, nuisance: Nuisance, values: Floats, shown: Sequence[Signals]) -> Floats:
+        """Tangent (n,) of a nuisance behind the model."""
         assert nuisance.run is not None
         run, told = self.runs[nuisance.run], (self.nuisances, values, nuisance.run)
         column = {
-            name: tangent(run, name, shown[nuisance.run][name], nuisance.name, by_name(*told, name))
+            name: instrument_tangent(run, name, shown[nuisance.run][name], nuisance.name, values_by_name(*told, name))
             for name in run.answers
             if nuisance.acts_on(name)
         }
-        return self.of_run(nuisance.run, {name: values for name, values in column.items() if values is not None})
+        return self.run_vector(nuisance.run, {name: values for name, values in column.items() if values is not None})
 
-    def _through(
+    def _column_through_engine(
         self, number: int, nuisance: Nuisance, values: Floats, settings: Sequence[Setting], shown: Sequence[Signals]
     ) -> Floats:
-        """Column (n,) of a nuisance that the engine answers to, by a difference; 0 where it answers on neither side."""
+        """Tangent (n,) of a nuisance that the engine answers to, by a difference; 0 where it answers on no side."""
         assert nuisance.candidate is not None
         coordinate = nuisance.candidate.coordinates[nuisance.coordinate]
-        step = min(STEP * min(map(abs, coordinate.starts)), nuisance.sigma)
+        step = min(SLOPE_STEP_SHARE * min(map(abs, coordinate.starts)), nuisance.sigma)
         step = -step if values[number] + step > coordinate.high else step
 
         def change(by: float) -> Floats:
@@ -143,14 +161,14 @@ class ObservedModel:
         """Change (n,) from what is shown, in one run or in all. ValueError where the engine has no answer."""
         total = np.zeros(len(self.samples))
         for run in range(len(self.runs)) if only is None else [only]:
-            after = self._shown(run, values, settings)
-            total += self.of_run(run, {name: after[name] - shown[run][name] for name in after})
+            after = self._run_signals(run, values, settings)
+            total += self.run_vector(run, {name: after[name] - shown[run][name] for name in after})
         return total
 
-    def of_run(self, run: int, signals: Signals) -> Floats:
-        """Vector (n,) of some channels of one run, zero elsewhere."""
+    def run_vector(self, run: int, signals: Signals) -> Floats:
+        """Whitened coefficients (n,) of some channels of one run, zero elsewhere."""
         parts = [
-            self.samples.of_block(block, block.whitening(signals[block.channel]))
+            self.samples.block_vector(block, block.whitening(signals[block.channel]))
             for block in self.samples.blocks
             if block.run == run and block.channel in signals
         ]

@@ -26,14 +26,14 @@ POOLS: tuple[frozenset[str], ...] = tuple(
 )  # fmt: skip
 
 
-SMALL = 1e-3  # of the noise: what channels share is no more than that
+NEGLIGIBLE_SHARED_NOISE = 1e-3  # of the noise: what channels share is no more than that
 SharedNoise = Sequence[Signals]
 """For each run, channel -> (t, k): their combinations with standard normal weights are noise that channels share."""
 
 
 @dataclass(frozen=True)
 class SampleBlock:
-    """One channel of one run. rows : its part of the vector."""
+    """Samples of one channel of one run. rows : their part of the vector."""
 
     run: int
     channel: str
@@ -41,15 +41,16 @@ class SampleBlock:
     rows: slice
 
     @property
-    def observed(self) -> Bools:
-        """Samples (t,) that are there."""
+    def observed_mask(self) -> Bools:
+        """Flags (t,) of the samples that are there."""
         return self.whitening.observed
 
 
 class Samples:
-    """blocks : in order. bank : the transform. channels : names by number. press : (n,) number of the press.
+    """All samples of a recording as one vector of n coefficients.
 
-    presses : (run, press within it) of each number. run, phase : (n,) of each coefficient. shared : as asked.
+    blocks : in order. bank : the transform. channels : names by number. press : (n,) number of the press. presses :
+    (run, press within it) of each number. run, phase : (n,) of each coefficient. shared : noise that channels share.
     """
 
     def __init__(
@@ -57,9 +58,9 @@ class Samples:
     ) -> None:
         self.recording, self.noise, self.shared = recording, noise, shared
         self.channels = tuple(dict.fromkeys(name for run in recording.runs for name in run.answers))
-        self.blocks = tuple(_blocks(recording, noise))
-        labels, steps = _labels(recording, self.blocks, self.channels)
-        self.bank = FilterBank(time_segments(labels, steps), _edges(labels, steps))
+        self.blocks = tuple(_sample_blocks(recording, noise))
+        labels, steps = _sample_labels(recording, self.blocks, self.channels)
+        self.bank = FilterBank(time_segments(labels, steps), _band_edges_Hz(labels, steps))
         pairs = np.column_stack([labels["run"], labels["press"]])
         unique, number = np.unique(pairs, axis=0, return_inverse=True)
         self.presses = tuple((int(run), int(press)) for run, press in unique)
@@ -67,27 +68,27 @@ class Samples:
         self.run, self.phase = labels["run"], labels["phase"]
         self.kind = np.array([self.channels.index(block.channel) for block in self.blocks])
         self._whiteners: tuple[_Whitener, ...] = ()  # of what is shared, which is made without them
-        self._whiteners = tuple(_whitener(self, run, own) for run, own in enumerate(shared) if own)
+        self._whiteners = tuple(_shared_noise_whitener(self, run, own) for run, own in enumerate(shared) if own)
 
     def __len__(self) -> int:
         return len(self.press)
 
     def noise_summaries(self) -> dict[tuple[str, str], Mapping[str, Any]]:
-        """(label, channel) -> summary of its noise model."""
+        """Summaries of the noise models by (label, channel)."""
         return {key: law.summary() for key, law in self.noise.items()}
 
     def coefficients(self, signals: Sequence[Signals]) -> Floats:
-        """The vector (n,), or (n, k), of signals of all runs: channel -> (t,) or (t, k)."""
+        """Vector (n,), or (n, k), of the signals of all runs: channel -> (t,) or (t, k)."""
         white = np.concatenate([b.whitening(signals[b.run][b.channel]) for b in self.blocks])
-        return self._apart(self.bank.coefficients(white))
+        return self._decorrelate(self.bank.coefficients(white))
 
-    def of_block(self, block: SampleBlock, white: Floats) -> Floats:
-        """The transform (n, ...) of whitened samples (m, ...) of one block, zero elsewhere."""
+    def block_vector(self, block: SampleBlock, white: Floats) -> Floats:
+        """Vector (n, ...) of whitened samples (m, ...) of one block, zero elsewhere."""
         out = np.zeros((len(self), *white.shape[1:]))
-        out[block.rows] = self._transforms[block.rows.start](white)
-        return self._apart(out)
+        out[block.rows] = self._block_transforms[block.rows.start](white)
+        return self._decorrelate(out)
 
-    def _apart(self, values: Floats) -> Floats:
+    def _decorrelate(self, values: Floats) -> Floats:
         """Coefficients (n, ...) with the noise that channels share made independent, in place."""
         for one in self._whiteners:
             own = values[one.rows]
@@ -96,23 +97,23 @@ class Samples:
         return values
 
     def pieces_of(self, block: SampleBlock) -> tuple[TimeSegment, ...]:
-        """The pieces of one block."""
+        """Time segments of one block."""
         rows = block.rows
         return tuple(piece for piece in self.bank.pieces if rows.start <= piece.samples.start < rows.stop)
 
     @cached_property
-    def _transforms(self) -> Mapping[int, CosineTransform]:
-        """Of each block, by its first row."""
+    def _block_transforms(self) -> Mapping[int, CosineTransform]:
+        """Cosine transforms of the blocks, by their first row."""
         return {block.rows.start: CosineTransform(self.pieces_of(block)) for block in self.blocks}
 
     @cached_property
     def fold(self) -> Ints:
-        """Label (n,) of what is held out together: a press; a phase where there is one press only."""
+        """Labels (n,) of what is held out together: a press; a phase where there is one press only."""
         return self.press if len(self.presses) > 1 else self.phase
 
     @cached_property
-    def recorded(self) -> Floats:
-        """The vector (n,) of what was measured."""
+    def recorded_vector(self) -> Floats:
+        """Vector (n,) of what was measured."""
         return self.coefficients([
             {name: np.where(np.isfinite(run.channels[name]), run.channels[name], 0.0) for name in run.answers}
             for run in self.recording.runs
@@ -120,17 +121,17 @@ class Samples:
 
     @cached_property
     def block_of(self) -> Ints:
-        """Number (n,) of the block of each coefficient."""
+        """Numbers (n,) of the block of each coefficient."""
         return np.repeat(np.arange(len(self.blocks)), [b.rows.stop - b.rows.start for b in self.blocks])
 
     @cached_property
     def order_in_piece(self) -> Ints:
-        """Number (n,) of half turns of each coefficient over its piece: 0, 1, 2 ..."""
+        """Numbers (n,) of half turns of each coefficient over its piece: 0, 1, 2 ..."""
         return np.concatenate([np.arange(p.samples.stop - p.samples.start) for p in self.bank.pieces])
 
     @cached_property
     def frequency_Hz(self) -> Floats:
-        """Of each coefficient, (n,)."""
+        """Frequency (n,) of each coefficient in Hz."""
         lengths = [(p.samples.stop - p.samples.start, p.step_s) for p in self.bank.pieces]
         return np.concatenate([np.arange(count) / (2.0 * count * step) for count, step in lengths])
 
@@ -145,13 +146,13 @@ class Samples:
 
     @cached_property
     def piece_of(self) -> Ints:
-        """Number (n,) of the piece of each coefficient."""
+        """Numbers (n,) of the piece of each coefficient."""
         lengths = [p.samples.stop - p.samples.start for p in self.bank.pieces]
         return np.repeat(np.arange(len(lengths)), lengths)
 
     @cached_property
     def hypotheses(self) -> Hypotheses:
-        """Every cell and what is pooled of them; each noise model errs on its own in each band."""
+        """Hypotheses on every cell and on pools of cells; each noise model errs on its own in each band."""
         used: dict[tuple[int, tuple[float, float]], float] = {}
         keys = []
         for cell in self.bank.cells:
@@ -170,18 +171,19 @@ class Samples:
 
 @dataclass(frozen=True)
 class _Whitener:
-    """(1 + C C')^-1/2 = 1 - U diag(less) U' for columns C = U S V' in some rows."""
+    """The map (1 + C C')^-1/2 = 1 - U diag(less) U' for columns C = U S V' in some rows."""
 
     rows: Ints
     directions: Floats
     less: Floats
 
 
-def _whitener(samples: Samples, run: int, shared: Signals) -> _Whitener:
+def _shared_noise_whitener(samples: Samples, run: int, shared: Signals) -> _Whitener:
+    """Map that makes the noise that channels of a run share independent."""
     own = [block for block in samples.blocks if block.run == run and block.channel in shared]
-    columns = np.vstack([samples.of_block(b, b.whitening(shared[b.channel]))[b.rows] for b in own])
+    columns = np.vstack([samples.block_vector(b, b.whitening(shared[b.channel]))[b.rows] for b in own])
     directions, sizes, _ = np.linalg.svd(columns, full_matrices=False)
-    kept = sizes > SMALL
+    kept = sizes > NEGLIGIBLE_SHARED_NOISE
     rows = np.concatenate([np.arange(block.rows.start, block.rows.stop) for block in own])
     return _Whitener(rows, directions[:, kept], 1.0 - 1.0 / np.sqrt(1.0 + sizes[kept] ** 2))
 
@@ -197,8 +199,8 @@ def noise_degrees(model: NoiseModel) -> float:
     return max(model.samples / (2.0 * parameters), 1.0) if model.samples else float("inf")
 
 
-def used(run: Run, channel: str) -> Bools:
-    """Samples (t,) that count: measured, and not at a limit that rig.toml states.
+def used_mask(run: Run, channel: str) -> Bools:
+    """Flags (t,) of samples that count: measured, and not at a limit that rig.toml states.
 
     A limit that it does not state is itself what has to be explained.
     """
@@ -206,19 +208,19 @@ def used(run: Run, channel: str) -> Bools:
     return run.usable(channel) if stated else run.valid[channel]
 
 
-def _blocks(recording: Recording, noise: Mapping[tuple[str, str], NoiseModel]) -> list[SampleBlock]:
+def _sample_blocks(recording: Recording, noise: Mapping[tuple[str, str], NoiseModel]) -> list[SampleBlock]:
     found: list[SampleBlock] = []
     first = 0
     for number, run in enumerate(recording.runs):
         for channel in run.answers:
-            whitening = noise[run.label, channel].whitening(used(run, channel), run.time_s)
+            whitening = noise[run.label, channel].whitening(used_mask(run, channel), run.time_s)
             last = first + int(whitening.observed.sum())
             found.append(SampleBlock(number, channel, whitening, slice(first, last)))
             first = last
     return found
 
 
-def _labels(
+def _sample_labels(
     recording: Recording, blocks: Sequence[SampleBlock], channels: Sequence[str]
 ) -> tuple[dict[str, Ints], Floats]:
     """Labels (n,) of every sample and the nominal step (n,) of its even piece."""
@@ -235,12 +237,12 @@ def _labels(
             "phase": found.phase, "press": found.press, "piece": number,
         }  # fmt: skip
         for name, values in own.items():
-            columns[name].append(values[block.observed])
-        steps.append(step[block.observed])
+            columns[name].append(values[block.observed_mask])
+        steps.append(step[block.observed_mask])
     return {name: np.concatenate(parts) for name, parts in columns.items()}, np.concatenate(steps)
 
 
-def _edges(labels: Mapping[str, Ints], steps: Floats) -> Floats:
-    """Octaves from one turn in the longest piece up."""
+def _band_edges_Hz(labels: Mapping[str, Ints], steps: Floats) -> Floats:
+    """Edges of octaves in Hz from one turn in the longest piece up."""
     longest = max((p.samples.stop - p.samples.start) * p.step_s for p in time_segments(labels, steps))
     return octave_edges_Hz(longest, float(steps.min()))

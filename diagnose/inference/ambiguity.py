@@ -35,17 +35,17 @@ def _distance(samples: Samples, true: Fitted, rival: Fitted) -> float:
     if true is rival:
         return 0.0
     system = true.system
-    apart = system.weighted(_modelled(samples, true) - _modelled(samples, rival))
-    slopes = system.weighted(rival.slopes)
-    gram = system.quadratic.product(slopes, slopes)
-    along = system.quadratic.product(slopes, apart[:, None])[:, 0]
+    apart = system.weighted_rows(_modelled(samples, true) - _modelled(samples, rival))
+    slopes = system.weighted_rows(rival.slopes)
+    gram = system.quadratic.inner_products(slopes, slopes)
+    along = system.quadratic.inner_products(slopes, apart[:, None])[:, 0]
     return float(np.sqrt(max(system.quadratic.square(apart) - float(along @ np.linalg.pinv(gram) @ along), 0.0)))
 
 
 def _modelled(samples: Samples, fit: Fitted) -> Floats:
     """What a fit predicts with its nuisances, (n,), but for discrepancies."""
     system = fit.system
-    nuisances = system.nuisances(system.residual)
+    nuisances = system.best_nuisances(system.residual)
     moved = np.zeros(len(samples))
     moved[system.informative] = system.nuisance_design[:, : len(nuisances)] @ nuisances
-    return np.asarray(samples.recorded - system.residual + moved)
+    return np.asarray(samples.recorded_vector - system.residual + moved)

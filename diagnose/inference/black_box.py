@@ -27,17 +27,21 @@ def _of_block(samples: Samples, block: SampleBlock, edges_s: Floats) -> Floats:
         depth = np.maximum(depth, 0.0)
     edges = np.maximum.accumulate(np.maximum(np.round(edges_s / run.step_s), np.arange(len(edges_s)))).astype(np.int64)
     past = np.column_stack([lagged_means(values, edges) for values in (depth, depth**2)])
-    return samples.of_block(block, block.whitening(past))
+    return samples.block_vector(block, block.whitening(past))
 
 
 def box_scores(samples: Samples, baseline: LinearisedSystem, metric: LinearisedSystem, past: Floats) -> Floats:
     """Held-out log-scores (presses,) of the baseline with nuisances plus the black box, in another system's metric."""
     informative = metric.informative
-    columns = metric.weighted(baseline.nuisance_design)
+    columns = metric.weighted_rows(baseline.nuisance_design)
     kept = baseline.sigma > 0.0
     fold = samples.fold[informative]
     found = impulse_response_forecast(
-        metric.weighted(baseline.residual), columns[:, kept], baseline.sigma[kept], metric.weighted(past), fold
+        metric.weighted_rows(baseline.residual),
+        columns[:, kept],
+        baseline.sigma[kept],
+        metric.weighted_rows(past),
+        fold,
     )
     _, place = np.unique(fold, return_inverse=True)
     return np.asarray(found.log_scores + np.bincount(place, np.log(metric.weight[informative])))

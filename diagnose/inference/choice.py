@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnose.figures import figure
-from diagnose.fit.baseline import within_priors
+from diagnose.fit.baseline import hold_strained_nuisances
 from diagnose.fit.descent import coordinates
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted
@@ -63,7 +63,7 @@ class Judge:
 
     def __init__(self, model: ObservedModel, found: Screening, rng: np.random.Generator) -> None:
         self.model, self.found, self.rng = model, found, rng
-        self.declared = within_priors(found.start, found.baseline)
+        self.declared = hold_strained_nuisances(found.start, found.baseline)
         self.base = forecasted(model.samples, self.declared)
         self.strain = nuisance_pull(found.baseline)
 

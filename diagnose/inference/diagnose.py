@@ -6,8 +6,8 @@ import numpy as np
 
 from diagnose.figures import figure
 from diagnose.findings import Findings
-from diagnose.fit.baseline import fitted_baseline
-from diagnose.fit.drive_error import drive_error
+from diagnose.fit.baseline import fit_baseline
+from diagnose.fit.drive_error import likeliest_drive_error
 from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.samples import Samples
@@ -50,7 +50,7 @@ def diagnose(recording: Recording, engine: Engine, seed: int, report: Report) ->
     model = ObservedModel(Samples(recording, noise), engine)
     engine.prepare([one.candidate for one in model.nuisances if one.candidate is not None], report)
     report("baseline", 0, 1)
-    baseline = fitted_baseline(model)
+    baseline = fit_baseline(model)
     found = checked(model.samples, baseline, rng)
     if found.p_value > RATES.level:
         return _quiet(model, baseline, found)
@@ -91,11 +91,11 @@ def _beside_a_drive_error(
     if not choice.models:
         return None
     best = choice.models[0].fit
-    error = drive_error(model, best.nuisances(model), best.settings, RATES.level)
+    error = likeliest_drive_error(model, best.closest_nuisances(model), best.settings, RATES.level)
     if error is None:
         return None
-    model = model.seen_as(Samples(model.samples.recording, model.samples.noise, error.noise))
-    baseline = fitted_baseline(model)
+    model = model.with_samples(Samples(model.samples.recording, model.samples.noise, error.noise))
+    baseline = fit_baseline(model)
     if checked(model.samples, baseline, rng).p_value > RATES.level:
         return None
     _, _, findings = _explained(model, baseline, found, rng, report)
@@ -170,7 +170,7 @@ def _findings(model: ObservedModel, screening: Screening, found: Checked, choice
         held_out=held_out,
         unnamed=unnamed,
         closest=improved_signals(model, closest) if closest else None,
-        nuisances=nuisance_values(model, chosen.fit.nuisances(model) if chosen else screening.baseline.values),
+        nuisances=nuisance_values(model, chosen.fit.closest_nuisances(model) if chosen else screening.baseline.values),
         baseline=labelled(model, screening.start.values, ()),
         improved=improved_signals(model, chosen) if chosen else None,
         black_box_gain=choice.box_gain,

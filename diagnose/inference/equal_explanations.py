@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from diagnose.figures import percent
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.signal_discrepancy import VISIBLE
+from diagnose.fit.signal_discrepancy import VISIBLE_ERROR
 from diagnose.inference.choice import Choice, Judged
 from diagnose.inference.screening import Screening
 from diagnose.inference.tolerant_judge import TolerantJudge, judge_of_name
@@ -40,7 +40,7 @@ def _needless(judge: TolerantJudge, models: Sequence[Judged]) -> list[str]:
     for one in models[1:]:
         (first, *more), left = one.fit.candidates, judge.largest(one.forecast)
         second = [other for other in pair if other != first]
-        if not more and len(second) < len(pair) and second and left <= VISIBLE:
+        if not more and len(second) < len(pair) and second and left <= VISIBLE_ERROR:
             return [
                 f"{first.mechanism} ({first.component}) alone leaves {percent(left)} of the signal, which may be flaws "
                 f"of an ordinary rig: {second[0].mechanism} ({second[0].component}) is not named for that."

@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from diagnose.findings import Detection, FittedModel
-from diagnose.fit.intervals import intervals, points
+from diagnose.fit.intervals import point_intervals, profile_intervals
 from diagnose.fit.nuisances import Nuisance
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted
@@ -19,15 +19,15 @@ from foundation.arrays import Floats
 
 def fitted_model(model: ObservedModel, one: Judged, probability: float, detailed: bool) -> FittedModel:
     """The model as findings keep it, with its probability. detailed : whether intervals may be asked for."""
-    each = zip(model.nuisances, one.fit.nuisances(model), strict=True)
+    each = zip(model.nuisances, one.fit.closest_nuisances(model), strict=True)
     return FittedModel(
         settings=one.fit.settings,
-        parameters=points(one.fit),
+        parameters=point_intervals(one.fit),
         gain=one.gain.mean,
         gain_lower=one.gain.lower,
         probability=probability,
         p_left=one.p_left,
-        intervals=partial(intervals, model, one.fit) if detailed else None,
+        intervals=partial(profile_intervals, model, one.fit) if detailed else None,
         shared={nuisance.name: float(value) for nuisance, value in each if nuisance.run is None},
     )
 
@@ -41,7 +41,7 @@ def detection(model: ObservedModel, found: Checked) -> Detection:
 def nuisance_values(model: ObservedModel, values: Floats) -> dict[str, tuple[float, float]]:
     """Name, "name of run" or "name of run, channel" -> value and prior sigma."""
     each = zip(model.nuisances, values, model.sigma, strict=True)
-    return {_label(one, model): (one.stated(float(value)), float(sigma)) for one, value, sigma in each}
+    return {_label(one, model): (one.stated_value(float(value)), float(sigma)) for one, value, sigma in each}
 
 
 def _label(nuisance: Nuisance, model: ObservedModel) -> str:
@@ -58,7 +58,7 @@ def labelled(model: ObservedModel, values: Floats, settings: Sequence[Setting]) 
 
 def improved_signals(model: ObservedModel, chosen: Judged) -> Mapping[str, Signals]:
     """Label -> what the instruments of that run show with the mechanisms of the model."""
-    return labelled(model, chosen.fit.nuisances(model), chosen.fit.settings)
+    return labelled(model, chosen.fit.closest_nuisances(model), chosen.fit.settings)
 
 
 def information(fits: Sequence[Fitted]) -> Floats:
@@ -67,7 +67,7 @@ def information(fits: Sequence[Fitted]) -> Floats:
     total, first = np.zeros((count, count)), 0
     for fit in fits:
         last = first + len(fit.values)
-        columns = fit.system.weighted(fit.slopes)
-        total[first:last, first:last] = fit.system.quadratic.product(columns, columns)
+        columns = fit.system.weighted_rows(fit.slopes)
+        total[first:last, first:last] = fit.system.quadratic.inner_products(columns, columns)
         first = last
     return total

@@ -47,13 +47,15 @@ def forecasted(
         width = np.array([c.high - c.low for c in coordinates(fit.candidates)])
         columns, sigma = np.column_stack([columns, fit.slopes[system.informative]]), np.concatenate([sigma, width])
         residual = residual + fit.slopes @ fit.values
-    return _left_out(samples, system, system.weighted(columns), sigma, residual, samples.fold if fold is None else fold)
+    return _left_out(
+        samples, system, system.weighted_rows(columns), sigma, residual, samples.fold if fold is None else fold
+    )
 
 
 def separation(one: Forecasted, other: Forecasted) -> Floats:
     """Sigma (presses,) between two forecasts, in the predictive covariance of the first."""
     system = one.system
-    apart = system.weighted(one.predicted - other.predicted)
+    apart = system.weighted_rows(one.predicted - other.predicted)
     folds = leave_press_out(one.fold[system.informative])
     return np.array([
         np.sqrt(max(Quadratic(spread, np.ones(spread.shape[1])).square(apart[held]), 0.0))
@@ -72,7 +74,7 @@ def _left_out(
 ) -> Forecasted:
     kept = sigma > 0.0
     columns, sigma = columns[:, kept], sigma[kept]
-    white, informative = system.weighted(residual), np.flatnonzero(system.informative)
+    white, informative = system.weighted_rows(residual), np.flatnonzero(system.informative)
     folds = leave_press_out(fold[informative])
     sums = [Sums.from_columns(columns[held], white[held]) for _, held in folds]
     nothing = Sums(np.zeros((len(sigma), len(sigma))), np.zeros(len(sigma)), 0.0, 0)
@@ -91,5 +93,5 @@ def _left_out(
         half = np.asarray(np.linalg.solve(root, own.T).T, dtype=np.float64)
         spread.append(half)
         mean = half @ np.linalg.solve(root, others.moment / length)
-        predicted[rows] = (samples.recorded - residual)[rows] + mean / system.weight[rows]
+        predicted[rows] = (samples.recorded_vector - residual)[rows] + mean / system.weight[rows]
     return Forecasted(scores, predicted, system, tuple(spread), fold)

@@ -6,7 +6,7 @@ import numpy as np
 
 from diagnose.findings import Findings, Fit, Remainder
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.signal_discrepancy import by_phase
+from diagnose.fit.signal_discrepancy import phase_shares
 from diagnose.inference.choice import implausible
 from diagnose.inference.findings_of_fits import fitted_model, improved_signals, information, nuisance_values
 from diagnose.inference.main_part import NEARLY_ALL, flaws_alone
@@ -51,7 +51,7 @@ def with_more(model: ObservedModel, screening: Screening, findings: Findings, re
         unnamed=None,
         closest=None,
         improved=improved_signals(judge.model, one),
-        nuisances=nuisance_values(judge.model, more.fit.nuisances(judge.model)),
+        nuisances=nuisance_values(judge.model, more.fit.closest_nuisances(judge.model)),
         information=information([more.fit]),
         remainder=rest,
         kind="",
@@ -62,4 +62,4 @@ def with_more(model: ObservedModel, screening: Screening, findings: Findings, re
 
 def _remainder(more: Joined, held_out: Fit) -> Remainder:
     squares = more.judge.tolerance.squares(residual_beside(more.judge, more.fit.settings))
-    return Remainder(held_out.share, by_phase(more.judge.model.samples, squares, PHASES))
+    return Remainder(held_out.share, phase_shares(more.judge.model.samples, squares, PHASES))

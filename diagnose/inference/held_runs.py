@@ -7,8 +7,8 @@ import numpy as np
 
 from diagnose.engines.some_runs import SomeRuns, other_runs, select_runs
 from diagnose.findings import Findings, FittedModel
-from diagnose.fit.baseline import believed, fitted_baseline
-from diagnose.fit.linearised_system import linearised
+from diagnose.fit.baseline import fit_baseline, linearise_at_plausible
+from diagnose.fit.linearised_system import linearise
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.samples import Samples
 from diagnose.forward import Engine, Setting
@@ -45,7 +45,7 @@ def _scored(findings: Findings, train: ObservedModel, held: ObservedModel) -> Fi
     """Findings whose errors, signals and noise speak of the held-out runs too."""
     best: FittedModel | None = findings.models[0] if findings.models else None
     settings = tuple(one for one in best.settings if not one.candidate.traits.free_phase) if best else ()
-    starts = [believed(model, fitted_baseline(model)).values for model in (train, held)]
+    starts = [linearise_at_plausible(model, fit_baseline(model)).values for model in (train, held)]
     before, after = (_transferred((train, held), starts, chosen) for chosen in ((), settings))
     gains = _log_scores(held, after, settings) - _log_scores(held, before, ())
     fit = errors(held, range(len(held.samples.presses)), before, after, settings, gains)
@@ -82,11 +82,11 @@ def _fitted(model: ObservedModel, start: Floats, settings: Sequence[Setting], sh
 
 def _log_scores(model: ObservedModel, values: Floats, settings: Sequence[Setting]) -> Floats:
     """Log-density (presses,) of each press alone, its own nuisances integrated out under their priors."""
-    system, samples = linearised(model, values, settings), model.samples
+    system, samples = linearise(model, values, settings), model.samples
     shared = np.flatnonzero([one.run is None for one in model.nuisances])
     kept = np.setdiff1d(np.arange(len(system.sigma)), shared)
-    columns = system.weighted(system.nuisance_design)
-    white = system.weighted(system.residual) - columns[:, shared] @ values[shared]
+    columns = system.weighted_rows(system.nuisance_design)
+    white = system.weighted_rows(system.residual) - columns[:, shared] @ values[shared]
     scale = np.log(system.weight)
     rows = [samples.press == number for number in range(len(samples.presses))]
     return np.array([

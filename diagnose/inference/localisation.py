@@ -48,9 +48,9 @@ def shares(found: Screening, explained: dict[str, tuple[Floats, Bools]]) -> dict
         return {}
     marginal = _marginal(found)
     start = found.start
-    columns = [marginal(start.weighted(columns)) for columns, _ in explained.values()]
+    columns = [marginal(start.weighted_rows(columns)) for columns, _ in explained.values()]
     signs = [non_negative for _, non_negative in explained.values()]
-    found_shares = component_shares(marginal(start.weighted(start.residual)), columns, signs)
+    found_shares = component_shares(marginal(start.weighted_rows(start.residual)), columns, signs)
     return {name: float(share) for name, share in zip(explained, found_shares, strict=True)}
 
 
@@ -82,13 +82,13 @@ def places(
 def _owners(samples: Samples, found: Screening, explained: dict[str, tuple[Floats, Bools]]) -> dict[int, str]:
     """Cell -> the component whose best fit takes most of its excess away."""
     marginal, start = _marginal(found), found.start
-    white = marginal(start.weighted(start.residual))
+    white = marginal(start.weighted_rows(start.residual))
     cell, count = samples.bank.cell[start.informative], len(samples.bank.cells)
     before = np.bincount(cell, white**2, count)
     degrees = np.bincount(cell, minlength=count)
     taken = []
     for columns, _ in explained.values():
-        own = marginal(start.weighted(columns))
+        own = marginal(start.weighted_rows(columns))
         made = own @ np.linalg.lstsq(own, white, rcond=None)[0]
         taken.append(before - np.bincount(cell, (white - made) ** 2, count))
     best = np.argmax(taken, axis=0)
@@ -98,4 +98,4 @@ def _owners(samples: Samples, found: Screening, explained: dict[str, tuple[Float
 
 
 def _marginal(found: Screening) -> Marginal:
-    return Marginal(found.start.weighted(found.start.nuisance_design), found.start.sigma)
+    return Marginal(found.start.weighted_rows(found.start.nuisance_design), found.start.sigma)

@@ -14,9 +14,15 @@ import numpy as np
 from diagnose.findings import Fit
 from diagnose.fit.descent import settings
 from diagnose.fit.discrepancy import FORM_ERROR
-from diagnose.fit.linearised_system import linearised
+from diagnose.fit.linearised_system import linearise
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.signal_discrepancy import VISIBLE, SignalDiscrepancy, by_phase, conditions, in_plain_units
+from diagnose.fit.signal_discrepancy import (
+    VISIBLE_ERROR,
+    SignalDiscrepancy,
+    condition_labels,
+    phase_shares,
+    with_white_noise,
+)
 from diagnose.inference.choice import Judged, implausible, ordinary, score_of
 from diagnose.inference.forecasts import Forecasted
 from diagnose.inference.screening import Screening, screen
@@ -71,7 +77,7 @@ class MainPart:
         best = self.models[0].fit
         stated = all(candidate.traits.wrong_number for candidate in best.candidates)
         law = 0.0 if stated else FORM_ERROR
-        plain = self.left_size <= min(FLAWS, hypot(VISIBLE, law * self.effect_size)) and not implausible(best)
+        plain = self.left_size <= min(FLAWS, hypot(VISIBLE_ERROR, law * self.effect_size)) and not implausible(best)
         return few and not ordinary(best) and (plain or self.share - self.hidden >= NEARLY_ALL)
 
     def probabilities(self, rng: np.random.Generator) -> Floats:
@@ -87,11 +93,11 @@ def confirmed(held_out: Fit) -> bool:
 
 def main_part(model: ObservedModel, found: Screening, report: Report) -> MainPart | None:
     """None where no explanation shows, or none predicts better than the baseline."""
-    plain = model.seen_as(in_plain_units(model.samples))
-    seen = screen(plain, linearised(plain, found.baseline.values), report)
+    plain = model.with_samples(with_white_noise(model.samples))
+    seen = screen(plain, linearise(plain, found.baseline.values), report)
     tolerance = SignalDiscrepancy(plain.samples)
-    judge = TolerantJudge(plain, seen, tolerance, tolerance.sizes(seen.start.residual), conditions(plain.samples))
-    firsts = first_fits(judge.model, judge.found, report) if judge.largest(judge.base) > VISIBLE else []
+    judge = TolerantJudge(plain, seen, tolerance, tolerance.sizes(seen.start.residual), condition_labels(plain.samples))
+    firsts = first_fits(judge.model, judge.found, report) if judge.largest(judge.base) > VISIBLE_ERROR else []
     if not firsts:
         return None
     first = seen.candidates[firsts[0].number]
@@ -128,9 +134,9 @@ def _with_pairs(judge: TolerantJudge, models: Sequence[Judged], report: Report) 
 def _told(judge: TolerantJudge, models: Sequence[Judged]) -> MainPart:
     best = models[0]
     group = [n for n, one in enumerate(models) if n == 0 or not judge.excluded(one.forecast, best.forecast)]
-    flaws = judge.largest(best.forecast) <= VISIBLE
+    flaws = judge.largest(best.forecast) <= VISIBLE_ERROR
     order = [*group, *(n for n in range(len(models)) if n not in group)]
-    left = by_phase(judge.model.samples, judge.left(best.forecast), PHASES)
+    left = phase_shares(judge.model.samples, judge.left(best.forecast), PHASES)
     return MainPart(
         tuple(models[n] for n in order),
         tuple(range(len(group))),

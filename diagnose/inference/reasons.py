@@ -70,7 +70,7 @@ def _strained(model: ObservedModel, baseline: LinearisedSystem) -> list[str]:
         if deviations > FAR:
             of = "all runs" if nuisance.run is None else f"run '{model.runs[nuisance.run].label}'"
             of += "" if nuisance.channel is None else f" ({nuisance.channel})"
-            far.setdefault(nuisance.name, []).append((deviations, nuisance.stated(value), of))
+            far.setdefault(nuisance.name, []).append((deviations, nuisance.stated_value(value), of))
     said = []
     for name, each in far.items():
         deviations, value, of = max(each)

@@ -78,7 +78,7 @@ def nuisance_pull(system: LinearisedSystem, fitted: Floats | None = None) -> Nui
     quadratic = Quadratic(columns, sigma)
     learnt = sigma**2 - quadratic.variances()
     judged = np.isfinite(sigma) & (sigma > 0.0) & (learnt > UNTOUCHED * sigma**2)
-    distances = quadratic.mean(system.weighted(system.residual))[judged] / np.sqrt(learnt[judged])
+    distances = quadratic.mean(system.weighted_rows(system.residual))[judged] / np.sqrt(learnt[judged])
     farthest = float(np.max(np.abs(distances), initial=0.0))
     p_value = min(1.0, 2.0 * float(norm.sf(farthest)) * max(len(distances), 1))
     return NuisancePull(max(float(distances @ distances) - len(distances), 0.0), p_value)
@@ -87,6 +87,6 @@ def nuisance_pull(system: LinearisedSystem, fitted: Floats | None = None) -> Nui
 def _floating(system: LinearisedSystem, fitted: Floats | None) -> tuple[Floats, Floats]:
     """Columns (n, k) of all that floats, whitened, and its prior deviations (k,)."""
     if fitted is None:
-        return system.weighted(system.nuisance_design), system.sigma
+        return system.weighted_rows(system.nuisance_design), system.sigma
     columns = np.column_stack([system.nuisance_design, fitted[system.informative]])
-    return system.weighted(columns), np.concatenate([system.sigma, np.full(fitted.shape[1], np.inf)])
+    return system.weighted_rows(columns), np.concatenate([system.sigma, np.full(fitted.shape[1], np.inf)])

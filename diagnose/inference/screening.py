@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnose.fit.baseline import believed
+from diagnose.fit.baseline import linearise_at_plausible
 from diagnose.fit.descent import LEAST_GAIN
 from diagnose.fit.informative_rows import informative_rows
 from diagnose.fit.linearised_system import LinearisedSystem
@@ -35,12 +35,12 @@ class Screened:
 
 def screened(system: LinearisedSystem, sensitivities: Sequence[Sensitivity], noise_degrees: float) -> Screened:
     """By the score test along the tangent, and along each finite change, whichever shows more (Bonferroni)."""
-    marginal = Marginal(system.weighted(system.nuisance_design), system.sigma)
-    white = marginal(system.weighted(system.residual))
+    marginal = Marginal(system.weighted_rows(system.nuisance_design), system.sigma)
+    white = marginal(system.weighted_rows(system.residual))
     p_values, explained, estimates = [], [], []
     for one in sensitivities:
-        slopes = marginal(system.weighted(one.columns))
-        changes = marginal(system.weighted(one.finite))
+        slopes = marginal(system.weighted_rows(one.columns))
+        changes = marginal(system.weighted_rows(one.finite))
         tangent = score_test(white, slopes, one.non_negative, noise_degrees)
         always: Bools = np.array([True])
         finite = [score_test(white, change[:, None], always, noise_degrees) for change in changes.T]
@@ -94,13 +94,13 @@ class Screening:
 def screen(model: ObservedModel, baseline: LinearisedSystem, report: Report) -> Screening:
     """Every candidate of the engine."""
     candidates = model.engine.candidates
-    start = believed(model, baseline)
+    start = linearise_at_plausible(model, baseline)
     each = []
     for number, candidate in enumerate(candidates):
         report("screening", number, len(candidates))
         each.append(sensitivity(model, start.values, candidate))
     informative = informative_rows(model.samples, baseline, [*(s.columns for s in each), *(s.finite for s in each)])
-    baseline, start = baseline.reached(informative), start.reached(informative)
+    baseline, start = baseline.restricted_to(informative), start.restricted_to(informative)
     tests = screened(start, each, least_degrees(model))
     return Screening(candidates, baseline, start, tuple(each), tests, excess(baseline))
 

@@ -8,7 +8,7 @@ import numpy as np
 from diagnose.fit.descent import descent, lowest
 from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import Fitted, common_metric, fitted
+from diagnose.fit.refit import Fitted, common_metric, fit_mechanisms
 from diagnose.forward import Candidate
 from diagnose.inference.screening import Screening, least_degrees, screened
 from diagnose.inference.sensitivities import sensitivity
@@ -47,7 +47,7 @@ def singles(model: ObservedModel, found: Screening, firsts: Sequence[FirstFit], 
     fits = []
     for count, one in enumerate(firsts):
         report("fits", count, len(firsts))
-        fits.append(fitted(model, found.start, (found.candidates[one.number],), one.values, found.excess))
+        fits.append(fit_mechanisms(model, found.start, (found.candidates[one.number],), one.values, found.excess))
     return [fit for fit in refined(model, found.start, fits, found.excess, report) if _acts(fit)]
 
 
@@ -61,7 +61,7 @@ def refined(
         if not changed:
             break
         fits = [
-            fitted(model, start, fit.candidates, fit.values, excess)
+            fit_mechanisms(model, start, fit.candidates, fit.values, excess)
             if any(setting in changed for setting in fit.settings)
             else fit
             for fit in fits
@@ -114,7 +114,7 @@ def paired(
     best = lowest(problem, [np.concatenate([first.values, start]) for start in starts], found.rough)
     if best is None:
         return []
-    fit = fitted(model, first.system, both, best.values, found.excess)
+    fit = fit_mechanisms(model, first.system, both, best.values, found.excess)
     return [one for one in refined(model, first.system, [fit], found.excess, report) if _acts(one)]
 
 

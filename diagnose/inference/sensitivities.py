@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnose.fit.observed_model import STEP, ObservedModel
+from diagnose.fit.observed_model import SLOPE_STEP_SHARE, ObservedModel
 from diagnose.forward import Candidate, Coordinate, Setting
 from foundation.arrays import Bools, Floats
 
@@ -50,7 +50,7 @@ def sensitivity(
         found = {start: column for start, column in made.items() if column is not None}
         finite += list(found.values())
         places += [np.eye(count)[number] * start for start in found]
-        step = STEP * min(coordinate.starts, key=abs)
+        step = SLOPE_STEP_SHARE * min(coordinate.starts, key=abs)
         first = change(number, step)
         slope = first / step if first is not None else np.zeros(len(without))
         secants = [column / start for start, column in found.items()]

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import Fitted, fitted
+from diagnose.fit.refit import Fitted, fit_mechanisms
 from diagnose.fit.samples import Samples
 from diagnose.forward import Setting
 from diagnose.inference.main_part import FLAWS
@@ -42,7 +42,7 @@ def joined(model: ObservedModel, found: Screening, named: Sequence[Setting], rep
     """The named mechanisms with all that shows beside them, fitted anew beside what they leave."""
     judge = judge_of_name(model, found, named)
     values = np.concatenate([one.values for one in named])
-    fit = fitted(judge.model, judge.found.start, tuple(one.candidate for one in named), values, 0.0)
+    fit = fit_mechanisms(judge.model, judge.found.start, tuple(one.candidate for one in named), values, 0.0)
     now = Joined(judge, fit)
     while len(now.fit.candidates) < MOST_MECHANISMS and (more := _with_one_more(now, report)) is not None:
         now = more

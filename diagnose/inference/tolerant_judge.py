@@ -10,13 +10,13 @@ from dataclasses import replace
 import numpy as np
 from scipy.stats import norm
 
-from diagnose.fit.baseline import capped, within_priors
-from diagnose.fit.linearised_system import linearised, relative
+from diagnose.fit.baseline import cap_nuisances, hold_strained_nuisances
+from diagnose.fit.linearised_system import engine_errors, linearise
 from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import Fitted, fitted
+from diagnose.fit.refit import Fitted, fit_mechanisms
 from diagnose.fit.samples import Samples
-from diagnose.fit.signal_discrepancy import SignalDiscrepancy, conditions, in_plain_units
+from diagnose.fit.signal_discrepancy import SignalDiscrepancy, condition_labels, with_white_noise
 from diagnose.forward import Candidate, Setting
 from diagnose.inference.choice import Judged, score_of
 from diagnose.inference.forecasts import Forecasted, forecasted, gained, separation
@@ -38,11 +38,11 @@ class TolerantJudge:
         self, model: ObservedModel, found: Screening, tolerance: SignalDiscrepancy, sizes: Floats, fold: Ints
     ) -> None:
         self.tolerance, self.fold = tolerance, fold
-        self.model = model.tolerating(tolerance.variance(np.maximum(sizes, relative(model))))
+        self.model = model.with_tolerance(tolerance.variance(np.maximum(sizes, engine_errors(model))))
         rows = found.baseline.informative
-        start, baseline = (linearised(self.model, one.values, (), 0.0, rows) for one in (found.start, found.baseline))
+        start, baseline = (linearise(self.model, one.values, (), 0.0, rows) for one in (found.start, found.baseline))
         self.found = replace(found, start=start, baseline=baseline, excess=0.0)
-        self.base = forecasted(model.samples, within_priors(start, baseline), None, self.fold)
+        self.base = forecasted(model.samples, hold_strained_nuisances(start, baseline), None, self.fold)
         self.before = self.left(self.base)
 
     def tolerating(self, sizes: Floats) -> "TolerantJudge":
@@ -51,7 +51,7 @@ class TolerantJudge:
 
     def judged(self, fit: Fitted) -> Judged:
         """Held-out conditions predicted by a model that was fitted in this metric."""
-        forecast = forecasted(self.model.samples, capped(fit.system), fit, self.fold)
+        forecast = forecasted(self.model.samples, cap_nuisances(fit.system), fit, self.fold)
         left = 1.0 - self.share(forecast)
         return Judged(fit, forecast, self.gained(forecast, self.base), left, np.nan, np.nan)  # no test of noise alone
 
@@ -71,7 +71,7 @@ class TolerantJudge:
     def missed(self, forecast: Forecasted) -> Floats:
         """(n,) residual of the recording, less what the nuisances of each run that was left out make of it."""
         system, run = forecast.system, [one.run for one in self.model.nuisances]
-        residual = self.model.samples.recorded - forecast.predicted
+        residual = self.model.samples.recorded_vector - forecast.predicted
         own = np.flatnonzero([number is not None for number in run])
         for _, held in leave_press_out(forecast.fold[system.informative]):
             columns, rows = system.nuisance_design[held][:, own], np.flatnonzero(system.informative)[held]
@@ -118,7 +118,7 @@ class TolerantJudge:
     def refitted(self, fit: Fitted) -> Fitted:
         """A model fitted anew in this metric, from its values in another one."""
         start = replace(self.found.start, values=fit.system.values)
-        return fitted(self.model, start, fit.candidates, fit.values, 0.0)
+        return fit_mechanisms(self.model, start, fit.candidates, fit.values, 0.0)
 
     def best_first(self, fits: Sequence[Fitted]) -> list[Judged]:
         """Models by how well they predict held-out conditions."""
@@ -130,7 +130,7 @@ def held_together(samples: Samples, candidates: Sequence[Candidate]) -> Ints:
 
     The phase of hum in a run that was left out follows from no other run.
     """
-    return samples.fold if any(one.traits.free_phase for one in candidates) else conditions(samples)
+    return samples.fold if any(one.traits.free_phase for one in candidates) else condition_labels(samples)
 
 
 def left_by(judge: TolerantJudge, on: Sequence[Setting]) -> Floats:
@@ -141,15 +141,17 @@ def left_by(judge: TolerantJudge, on: Sequence[Setting]) -> Floats:
 def residual_beside(judge: TolerantJudge, on: Sequence[Setting]) -> Floats:
     """(n,) residual of all presses with settings, nuisances as they come closest."""
     start = judge.found.start
-    system = linearised(judge.model, start.values, on, 0.0, start.informative)
+    system = linearise(judge.model, start.values, on, 0.0, start.informative)
     residual = system.residual.copy()
-    residual[system.informative] -= system.nuisance_design @ system.quadratic.mean(system.weighted(system.residual))
+    residual[system.informative] -= system.nuisance_design @ system.quadratic.mean(
+        system.weighted_rows(system.residual)
+    )
     return residual
 
 
 def judge_of_name(model: ObservedModel, found: Screening, name: Sequence[Setting]) -> TolerantJudge:
     """Its discrepancy is what the named mechanisms leave."""
-    plain = model.seen_as(in_plain_units(model.samples))
+    plain = model.with_samples(with_white_noise(model.samples))
     tolerance = SignalDiscrepancy(plain.samples)
     fold = held_together(plain.samples, [one.candidate for one in name])
     judge = TolerantJudge(plain, found, tolerance, np.zeros(len(plain.samples.channels)), fold)

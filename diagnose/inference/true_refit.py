@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from diagnose.findings import Fit
-from diagnose.fit.baseline import plausible
-from diagnose.fit.linearised_system import LinearisedSystem, linearised
+from diagnose.fit.baseline import clip_to_plausible
+from diagnose.fit.linearised_system import LinearisedSystem, linearise
 from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import Fitted, fitted
+from diagnose.fit.refit import Fitted, fit_mechanisms
 from diagnose.forward import Setting
 from diagnose.inference.screening import Screening
 from foundation.arrays import Bools, Floats
@@ -43,9 +43,9 @@ def trained_and_held(
     settings: tuple[Setting, ...] = ()
     after = before = relaxed(model, found.start.values, (), seen, np.zeros(len(model.nuisances), dtype=bool))
     if fit is not None:
-        own = fitted(model, fit.system.reached(seen), fit.candidates, fit.values, found.excess)
+        own = fit_mechanisms(model, fit.system.restricted_to(seen), fit.candidates, fit.values, found.excess)
         settings = own.settings
-        after = own.nuisances(model)
+        after = own.closest_nuisances(model)
     runs = {samples.presses[n][0] for n in training}
     frozen = np.array([nuisance.run is None or nuisance.run in runs for nuisance in model.nuisances], dtype=bool)
     unseen = informative & np.isin(samples.press, held)
@@ -64,8 +64,8 @@ def unimproved(fit: Fit) -> Fit:
 def relaxed(model: ObservedModel, values: Floats, settings: Sequence[Setting], rows: Bools, frozen: Bools) -> Floats:
     """Nuisances fitted to some rows within what is plausible, but for those that are frozen."""
     for _ in range(ROUNDS if len(values) else 0):
-        system = linearised(model, values, settings, informative=rows)
-        values = model.answered(values, _bounded(system, values, frozen), settings)
+        system = linearise(model, values, settings, informative=rows)
+        values = model.answerable_nuisances(values, _bounded(system, values, frozen), settings)
     return values
 
 
@@ -76,8 +76,8 @@ def _bounded(system: LinearisedSystem, values: Floats, frozen: Bools) -> Floats:
     while not held.all():
         free = np.flatnonzero(~held)
         residual = system.residual[system.informative] - columns[:, held] @ values[held]
-        found = Quadratic(system.weighted(columns[:, free]), sigma[free]).mean(system.weighted(residual))
-        values[free] = plausible(found, sigma[free])
+        found = Quadratic(system.weighted_rows(columns[:, free]), sigma[free]).mean(system.weighted_rows(residual))
+        values[free] = clip_to_plausible(found, sigma[free])
         held[free] = values[free] != found
         if not held[free].any():
             break
@@ -114,7 +114,7 @@ def _relative(
                 continue
             run, found = model.runs[block.run], samples.recording.phases[block.run]
             own = [press for n in presses for number, press in [samples.presses[n]] if number == block.run]
-            rows = block.observed & np.isin(found.press, own)
+            rows = block.observed_mask & np.isin(found.press, own)
             recorded = run.channels[channel][rows]
             missed += float(((recorded - signals[block.run][channel][rows]) ** 2).sum())
             seen += float((recorded**2).sum())

@@ -41,7 +41,7 @@ def with_main_part(findings: Findings, main: MainPart, choice: Choice, rng: np.r
         unnamed=None,
         closest=None,
         improved=improved_signals(main.model, best),
-        nuisances=nuisance_values(main.model, best.fit.nuisances(main.model)),
+        nuisances=nuisance_values(main.model, best.fit.closest_nuisances(main.model)),
         information=information([main.models[n].fit for n in order[: len(main.group)]]),
         remainder=Remainder(main.share, main.left_by_phase),
         reasons=_not_everything(findings, choice, best),

@@ -13,7 +13,7 @@ import numpy as np
 
 from diagnose.findings import FittedModel
 from diagnose.fit.discrepancy import FORM_ERROR
-from diagnose.fit.linearised_system import LinearisedSystem, linearised
+from diagnose.fit.linearised_system import LinearisedSystem, linearise
 from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.samples import Samples
@@ -104,7 +104,7 @@ class PressJudge:
         prediction = model.vector(values, settings)
         slopes = [(model.vector(values, moved) - prediction) / step for moved, step in _moved(settings)]
         return ImaginedAnswer(
-            linearised(model, values, settings, FORM_ERROR),
+            linearise(model, values, settings, FORM_ERROR),
             prediction,
             np.column_stack([np.zeros((len(prediction), 0)), *slopes]),
         )
@@ -112,8 +112,8 @@ class PressJudge:
     def _spread(self, answer: ImaginedAnswer, settings: Sequence[Setting]) -> Floats:
         """From what the recording tells of the coordinates, and what is plausible without it."""
         widths = [c.high - c.low for setting in settings for c in setting.candidate.coordinates]
-        slopes = answer.system.weighted(answer.slopes)
-        told = answer.system.quadratic.product(slopes, slopes)
+        slopes = answer.system.weighted_rows(answer.slopes)
+        told = answer.system.quadratic.inner_products(slopes, slopes)
         return covariance_root(told + np.diag(np.square(1.0 / np.array(widths))))
 
     def _separation(self, one: ImaginedAnswer, other: ImaginedAnswer, *spreads: Floats) -> float:

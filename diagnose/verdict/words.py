@@ -7,7 +7,7 @@ from typing import Any
 
 from diagnose.figures import figure, p_equals, part, percent
 from diagnose.findings import Findings, Fit, FittedModel
-from diagnose.fit.signal_discrepancy import VISIBLE
+from diagnose.fit.signal_discrepancy import VISIBLE_ERROR
 from diagnose.next_press.choose import NextPress, surviving
 from diagnose.signals.recording import Recording
 from diagnose.verdict.content import next_experiment, without_press
@@ -143,10 +143,10 @@ def _nameless(findings: Findings) -> str:
     """What is said of a mismatch without a name, and whether an ordinary rig makes as much."""
     fits = [fit for fit in (findings.train, findings.held_out) if fit is not None]
     excess = max((sqrt(fit.excess_before) for fit in fits), default=inf)
-    if excess > VISIBLE and findings.ambiguous:
+    if excess > VISIBLE_ERROR and findings.ambiguous:
         rivals = listed([model_words(findings.models[n]) for n in findings.groups[0]], "or")
         return f"one of several things that these recordings cannot tell apart, so nothing is named: {rivals}."
-    if excess > VISIBLE:
+    if excess > VISIBLE_ERROR:
         return "something that none of the known mechanisms explains, so nothing is named."
     known = (
         "Several known mechanisms explain it alike"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diagnose.findings import Grade
-from diagnose.fit.drive_error import drive_error
+from diagnose.fit.drive_error import likeliest_drive_error
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.samples import Samples
 from diagnose.inference.diagnose import diagnose
@@ -52,7 +52,7 @@ def learned(recording, names=None, deepest_mm=np.inf):
     engine = Shallow(recording)
     engine.deepest_mm = deepest_mm
     model = ObservedModel(Samples(recording, noise_models(recording)), engine)
-    return drive_error(model, np.zeros(len(model.nuisances)), (), LEVEL)
+    return likeliest_drive_error(model, np.zeros(len(model.nuisances)), (), LEVEL)
 
 
 def test_its_size_and_band_are_those_of_the_tremor():
@@ -90,7 +90,7 @@ def test_noise_that_channels_share_is_white_once_it_is_known():
     for shared, least, most in (((), 2.0, np.inf), (found.noise, 0.9, 1.15)):
         samples = Samples(recording, noise, shared)
         model = ObservedModel(samples, ToyEngine(recording))
-        left = samples.recorded - model.vector(np.zeros(len(model.nuisances)))
+        left = samples.recorded_vector - model.vector(np.zeros(len(model.nuisances)))
         assert least < float(np.mean(left**2)) < most
 
 

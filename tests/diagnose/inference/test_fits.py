@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from diagnose.fit.baseline import PLAUSIBLE, believed, fitted_baseline
+from diagnose.fit.baseline import PLAUSIBLE_SIGMAS, fit_baseline, linearise_at_plausible
 from diagnose.fit.descent import descended, descent
 from diagnose.fit.discrepancy import FORM_ERROR
-from diagnose.fit.intervals import intervals
-from diagnose.fit.linearised_system import linearised
+from diagnose.fit.intervals import profile_intervals
+from diagnose.fit.linearised_system import linearise
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import common_metric, fitted, largest_form_error
+from diagnose.fit.refit import common_metric, fit_mechanisms, largest_form_error
 from diagnose.fit.samples import Samples
 from diagnose.forward import Candidate, Coordinate
 from diagnose.inference.choice import Judge, partners
@@ -35,8 +35,12 @@ def seen(recording, **more):
 @cache
 def leaking():
     model = seen(small(5, Sensor(leak=1.0), runs=4))
-    baseline = fitted_baseline(model)
-    return model, baseline, fitted(model, believed(model, baseline), (LEAK,), np.array([0.3]), excess(baseline))
+    baseline = fit_baseline(model)
+    return (
+        model,
+        baseline,
+        fit_mechanisms(model, linearise_at_plausible(model, baseline), (LEAK,), np.array([0.3]), excess(baseline)),
+    )
 
 
 def test_the_baseline_finds_the_nuisances_that_were_put_in():
@@ -44,7 +48,7 @@ def test_the_baseline_finds_the_nuisances_that_were_put_in():
     recording = small(8, runs=1, nuisance=nuisance, noise=0.002, distort=0.0, scatter=0.0)
     run = recording.runs[0]
     run.channels["voltage_V"][:] = 1.2 * np.interp(run.time_s - 0.1, run.time_s, run.channels["voltage_V"]) + 0.1
-    system = fitted_baseline(seen(recording))
+    system = fit_baseline(seen(recording))
     assert system.values == pytest.approx([0.2, 0.1, 0.1], abs=0.01)
 
 
@@ -54,8 +58,8 @@ def test_a_prediction_takes_the_whole_gain_though_the_model_states_an_error_of_i
     recording.runs[0].channels["voltage_V"][:] *= 1.08
     model = seen(recording)
     model.engine.accuracy = {"force_N": 0.04, "voltage_V": 0.04}
-    system = linearised(model, np.zeros(1))
-    (believed_gain,), (gain,) = system.nuisances(system.residual), system.closest()
+    system = linearise(model, np.zeros(1))
+    (believed_gain,), (gain,) = system.best_nuisances(system.residual), system.closest_nuisances()
     assert gain == pytest.approx(0.08, abs=0.012)  # its prior and the stated error of each sample keep the rest
     assert believed_gain < 0.06
 
@@ -67,10 +71,10 @@ def test_beside_a_nuisance_at_the_end_of_what_is_plausible_the_others_fit_as_wel
     model = seen(recording)
     everything, nothing = np.ones(len(model.samples), dtype=bool), np.zeros(2, dtype=bool)
     values = relaxed(model, relaxed(model, np.zeros(2), (), everything, nothing), (), everything, nothing)
-    system = linearised(model, values)
-    rows = np.vstack([system.weighted(system.nuisance_design[:, :2]), np.diag(1.0 / model.sigma)])
-    seen_and_prior = np.concatenate([system.weighted(system.residual), np.zeros(2)])
-    best = lsq_linear(rows, seen_and_prior, (-PLAUSIBLE * model.sigma, PLAUSIBLE * model.sigma))
+    system = linearise(model, values)
+    rows = np.vstack([system.weighted_rows(system.nuisance_design[:, :2]), np.diag(1.0 / model.sigma)])
+    seen_and_prior = np.concatenate([system.weighted_rows(system.residual), np.zeros(2)])
+    best = lsq_linear(rows, seen_and_prior, (-PLAUSIBLE_SIGMAS * model.sigma, PLAUSIBLE_SIGMAS * model.sigma))
     assert best.active_mask.tolist() == [1, 0]
     assert values == pytest.approx(best.x, rel=1e-4)
 
@@ -78,7 +82,7 @@ def test_beside_a_nuisance_at_the_end_of_what_is_plausible_the_others_fit_as_wel
 def test_nuisances_are_held_within_what_the_engine_can_answer():
     model = seen(small(8, runs=1, nuisance={"gain": 0.04, "modulus.medium1": 0.05}))
     names = [nuisance.name for nuisance in model.nuisances]
-    held = dict(zip(names, model.possible(np.full(len(names), -7.0)), strict=True))
+    held = dict(zip(names, model.clip_to_bounds(np.full(len(names), -7.0)), strict=True))
     assert held == {"gain": -7.0, "modulus.medium1": -0.9}
 
 
@@ -101,7 +105,7 @@ def test_a_fit_stops_at_its_bound():
 
 def test_the_right_mechanism_leaves_little_and_the_wrong_one_most():
     model, baseline, right = leaking()
-    wrong = fitted(model, baseline, (CAPACITANCE,), np.array([0.3]), excess(baseline))
+    wrong = fit_mechanisms(model, baseline, (CAPACITANCE,), np.array([0.3]), excess(baseline))
     assert share_left(right, excess(baseline)) < 0.05
     assert share_left(wrong, excess(baseline)) > 0.5
 
@@ -114,26 +118,28 @@ def test_an_effect_that_nuisances_cancel_excuses_nothing():
 
 def test_an_interval_is_where_the_likelihood_has_fallen_by_its_quantile():
     model, _, right = leaking()
-    (found,) = intervals(model, right)
+    (found,) = profile_intervals(model, right)
     leak = found["leak"]
     assert leak.low < 1.0 < leak.high
-    columns = right.system.weighted(right.slopes)
-    error = 1.0 / np.sqrt(right.system.quadratic.product(columns, columns)[0, 0])
+    columns = right.system.weighted_rows(right.slopes)
+    error = 1.0 / np.sqrt(right.system.quadratic.inner_products(columns, columns)[0, 0])
     assert leak.high - leak.low == pytest.approx(2.0 * 1.645 * error, rel=0.1)
 
 
 def test_an_interval_reaches_down_by_what_every_rig_has():
     model, _, right = leaking()
-    (without,) = intervals(model, right)
+    (without,) = profile_intervals(model, right)
     for usual, low in ((0.1, without["leak"].low - 0.1), (5.0, 0.0)):
-        (found,) = intervals(model, replace(right, candidates=(replace(LEAK, everyday={"leak": usual}),)))
+        (found,) = profile_intervals(model, replace(right, candidates=(replace(LEAK, everyday={"leak": usual}),)))
         assert (found["leak"].low, found["leak"].high) == pytest.approx((low, without["leak"].high))
 
 
 def test_an_interval_that_a_bound_ends_says_so():
     model = seen(small(6, Sensor(branches2=(0.1, 0.0, 0.0)), runs=3))
-    baseline = fitted_baseline(model)
-    (found,) = intervals(model, fitted(model, baseline, (BRANCHES,), np.full(3, 0.05), excess(baseline)))
+    baseline = fit_baseline(model)
+    (found,) = profile_intervals(
+        model, fit_mechanisms(model, baseline, (BRANCHES,), np.full(3, 0.05), excess(baseline))
+    )
     assert found["relative_moduli[1]"].low == 0.0
     assert found["relative_moduli[1]"].bounded
     assert found["relative_moduli[0]"].low > 0.05
@@ -147,9 +153,9 @@ def test_an_interval_may_end_where_a_law_is_a_simpler_one():
 
     law = replace(BRANCHES, parameters=parameters, derived=lambda _: {})
     model = seen(small(6, Sensor(branches2=(0.1, 0.0, 0.0)), runs=3), candidates=(law,))
-    baseline = fitted_baseline(model)
-    fit = fitted(model, baseline, (law,), np.full(3, 0.05), excess(baseline))
-    (found,) = intervals(model, replace(fit, values=np.array([*fit.values[:2], 0.01])))
+    baseline = fit_baseline(model)
+    fit = fit_mechanisms(model, baseline, (law,), np.full(3, 0.05), excess(baseline))
+    (found,) = profile_intervals(model, replace(fit, values=np.array([*fit.values[:2], 0.01])))
     assert found["third"].low == 0.0
 
 
@@ -159,8 +165,8 @@ def test_intervals_cover_the_truth():
     covered = 0
     for seed in range(40):
         model = seen(small(100 + seed, Sensor(leak=1.0), runs=4))
-        baseline = fitted_baseline(model)
-        (found,) = intervals(model, fitted(model, baseline, (LEAK,), np.array([0.8]), excess(baseline)))
+        baseline = fit_baseline(model)
+        (found,) = profile_intervals(model, fit_mechanisms(model, baseline, (LEAK,), np.array([0.8]), excess(baseline)))
         covered += found["leak"].low <= 1.0 <= found["leak"].high
     assert covered >= 31  # 36 expected; fewer than 31 has a chance of 1 % at 90 %
 
@@ -176,9 +182,9 @@ def test_intervals_cover_the_truth_where_the_model_errs_over_depth_in_all_runs_a
     covered = 0
     for seed in range(25):
         model = seen(small(200 + seed, Sensor(**{coordinate: true}), runs=4, noise=0.001, distort=0.01))
-        baseline = fitted_baseline(model)
-        fit = fitted(model, baseline, (candidate,), np.array([0.8 * true]), excess(baseline))
-        (found,) = intervals(model, fit)
+        baseline = fit_baseline(model)
+        fit = fit_mechanisms(model, baseline, (candidate,), np.array([0.8 * true]), excess(baseline))
+        (found,) = profile_intervals(model, fit)
         covered += found[coordinate].low <= true <= found[coordinate].high
     assert covered >= 19  # 22.5 expected; without the allowance 16 and 16
 
@@ -194,8 +200,10 @@ def test_intervals_cover_the_truth_though_the_surface_gives_way_at_the_first_tou
         sensor = Sensor(compliance=0.08, rounding_mm=4e-3)
         model = seen(small(300 + seed, sensor, runs=4, noise=0.001, distort=0.0), candidates=candidates)
         model.engine.accuracy = {"force_N": 0.002, "voltage_V": 0.002}
-        baseline = fitted_baseline(model)
-        (found,) = intervals(model, fitted(model, baseline, (compliance,), np.array([0.06]), excess(baseline)))
+        baseline = fit_baseline(model)
+        (found,) = profile_intervals(
+            model, fit_mechanisms(model, baseline, (compliance,), np.array([0.06]), excess(baseline))
+        )
         covered += found["compliance"].low <= 0.08 <= found["compliance"].high
     assert covered >= 17  # 18 expected; 14 without the allowance
 
@@ -203,9 +211,9 @@ def test_intervals_cover_the_truth_though_the_surface_gives_way_at_the_first_tou
 @pytest.mark.press
 def test_what_else_shows_beside_the_first_of_a_pair_is_tried_too():
     model = seen(small(12, Sensor(leak=1.0, branches2=(0.1, 0.1, 0.0)), runs=4))
-    screening = screen(model, fitted_baseline(model), silent)
+    screening = screen(model, fit_baseline(model), silent)
     judge = Judge(model, screening, np.random.default_rng(0))
-    leak = fitted(model, screening.start, (LEAK,), np.array([1.0]), 0.0)
+    leak = fit_mechanisms(model, screening.start, (LEAK,), np.array([1.0]), 0.0)
     imitated = paired(model, screening, leak, CANDIDATES[3], [np.full(3, 0.1)], silent)
     models = [judge.judged(fit) for fit in (leak, *imitated)]
     tried = [one.fit.candidates[1].name for one in partners(judge, models, models[1], silent)]

@@ -6,11 +6,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from diagnose.fit.baseline import fitted_baseline
-from diagnose.fit.discrepancy import allowance, columns, of_the_film
-from diagnose.fit.drive_noise import drive_noise
+from diagnose.fit.baseline import fit_baseline
+from diagnose.fit.discrepancy import error_scale_signals, rough_variance, smooth_columns
+from diagnose.fit.drive_noise import drive_noise_variance
 from diagnose.fit.informative_rows import informative_rows
-from diagnose.fit.linearised_system import linearised
+from diagnose.fit.linearised_system import linearise
 from diagnose.fit.nuisances import Nuisance
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.samples import Samples
@@ -70,11 +70,11 @@ def test_a_slope_is_taken_on_the_side_that_has_an_answer(low, high, answers):
 def test_a_baseline_is_fitted_beside_a_law_that_turns_over():
     """The modulus may only fall: what the fit of the smooth law asks for beyond is a rejected trial."""
     smooth = observed()
-    free = fitted_baseline(smooth).values
+    free = fit_baseline(smooth).values
     shared = [(n.name, n.run) for n in smooth.nuisances].index(("modulus.medium1", None))
     edge = 0.5 * free[shared]
     low, high = (edge, 1.0) if edge < 0.0 else (-1.0, edge)
-    held = fitted_baseline(ObservedModel(smooth.samples, Turning(smooth.samples.recording, low, high))).values
+    held = fit_baseline(ObservedModel(smooth.samples, Turning(smooth.samples.recording, low, high))).values
     assert free[shared] != 0.0
     assert low <= held[shared] <= high
 
@@ -85,10 +85,10 @@ def test_a_step_of_the_nuisances_ends_where_the_model_has_an_answer():
     model = ObservedModel(smooth.samples, Turning(smooth.samples.recording, -1.0, 0.3))
     start, end = np.zeros(len(model.sigma)), np.zeros(len(model.sigma))
     end[shared] = 1.0
-    assert model.answered(start, end, ())[shared] == 0.25
-    assert model.answered(start, 0.2 * end, ())[shared] == 0.2
+    assert model.answerable_nuisances(start, end, ())[shared] == 0.25
+    assert model.answerable_nuisances(start, 0.2 * end, ())[shared] == 0.2
     end[shared] = 100.0
-    assert model.answered(start, end, ())[shared] == 0.0
+    assert model.answerable_nuisances(start, end, ())[shared] == 0.0
 
 
 def test_nuisances_of_a_run_leave_the_other_alone_and_shared_ones_are_counted_once():
@@ -114,14 +114,14 @@ def test_the_vector_of_noise_is_white():
 def test_allowance_has_the_energy_that_was_asked_for():
     samples = observed().samples
     vector = observed().vector(np.zeros(len(observed().sigma)))
-    total = allowance(samples, vector, [0.1, 0.1]).sum()
+    total = rough_variance(samples, vector, [0.1, 0.1]).sum()
     assert total == pytest.approx(0.01 * float(vector @ vector))
 
 
 def test_discrepancy_columns_hold_each_channel_as_a_whole():
     model = observed()
     shown = model.signals(np.zeros(len(model.sigma)))
-    found, sigma = columns(model.samples, shown, [0.02, 0.01])
+    found, sigma = smooth_columns(model.samples, shown, [0.02, 0.01])
     voltage = [np.linalg.norm(c) for c, s in zip(found.T, sigma, strict=True) if s == 0.01]
     assert len(sigma) == 2 * 2 * 3 + 2
     assert voltage[-1] == pytest.approx(np.hypot(voltage[0], voltage[3]))
@@ -129,12 +129,12 @@ def test_discrepancy_columns_hold_each_channel_as_a_whole():
 
 def test_a_commanded_drive_adds_no_noise_and_a_measured_one_adds_its_own():
     quiet = observed()
-    assert drive_noise(quiet.samples, quiet.signals(np.zeros(len(quiet.sigma)))).max() < 1e-12
+    assert drive_noise_variance(quiet.samples, quiet.signals(np.zeros(len(quiet.sigma)))).max() < 1e-12
     recording = small(3, runs=1)
     run = recording.runs[0]
     run.channels["displacement_mm"] += 1e-3 * np.random.default_rng(0).standard_normal(len(run.time_s))
     model = ObservedModel(Samples(recording, noise_models(recording)), ToyEngine(recording))
-    added = drive_noise(model.samples, model.signals(np.zeros(len(model.sigma))))
+    added = drive_noise_variance(model.samples, model.signals(np.zeros(len(model.sigma))))
     assert added[model.samples.phase == 2].mean() > 0.1  # force changes by some 10 N/mm under a noise of 1 um
 
 
@@ -142,7 +142,7 @@ def test_live_rows_hold_the_sensitivities():
     model = observed()
     zero = np.zeros(len(model.sigma))
     effect = model.vector(zero, [Setting(CANDIDATES[0], (0.5,))]) - model.vector(zero)
-    live = informative_rows(model.samples, linearised(model, zero), [effect[:, None]])
+    live = informative_rows(model.samples, linearise(model, zero), [effect[:, None]])
     assert np.abs(effect[~live]).max() < 1.0
     assert live.sum() < 0.9 * len(live)
 
@@ -194,7 +194,7 @@ def test_several_channels_have_gain_lag_and_offset_each_for_itself():
 
 def test_the_error_of_the_model_is_that_of_the_film_also_where_an_electrode_collects_little():
     shown = two_channels().signals(np.zeros(len(two_channels().nuisances)))
-    for own, film in zip(shown, of_the_film(shown), strict=True):
+    for own, film in zip(shown, error_scale_signals(shown), strict=True):
         np.testing.assert_array_equal(film["voltage_2_V"], own["voltage_1_V"])
         np.testing.assert_array_equal(film["voltage_1_V"], own["voltage_1_V"])
         np.testing.assert_array_equal(film["force_N"], own["force_N"])
@@ -203,5 +203,5 @@ def test_the_error_of_the_model_is_that_of_the_film_also_where_an_electrode_coll
 def test_a_wrong_modulus_is_told_as_its_relative_error():
     """Whose coordinate is the logarithm of a factor: half the modulus is an error of -50 %."""
     halved = Nuisance("modulus.medium1", None, 0.05, property_error("medium1", ("modulus",)))
-    assert halved.stated(np.log(0.5)) == pytest.approx(-0.5)
-    assert Nuisance("gain", 0, 0.05).stated(0.1) == 0.1
+    assert halved.stated_value(np.log(0.5)) == pytest.approx(-0.5)
+    assert Nuisance("gain", 0, 0.05).stated_value(0.1) == 0.1

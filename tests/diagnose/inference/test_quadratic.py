@@ -14,8 +14,8 @@ RESIDUAL, OTHERS = RNG.standard_normal(30), RNG.standard_normal((30, 2))
 def test_products_are_those_of_the_dense_covariance():
     quadratic = Quadratic(COLUMNS, SIGMA)
     assert quadratic.square(RESIDUAL) == pytest.approx(RESIDUAL @ DENSE @ RESIDUAL)
-    np.testing.assert_allclose(quadratic.product(OTHERS, OTHERS), OTHERS.T @ DENSE @ OTHERS, rtol=1e-6)
-    np.testing.assert_allclose(quadratic.cleared(OTHERS), DENSE @ OTHERS, atol=1e-6)
+    np.testing.assert_allclose(quadratic.inner_products(OTHERS, OTHERS), OTHERS.T @ DENSE @ OTHERS, rtol=1e-6)
+    np.testing.assert_allclose(quadratic.apply_inverse(OTHERS), DENSE @ OTHERS, atol=1e-6)
 
 
 def test_the_determinant_is_that_of_the_dense_covariance():

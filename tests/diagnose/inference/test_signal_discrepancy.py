@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diagnose.fit.samples import Samples
-from diagnose.fit.signal_discrepancy import SignalDiscrepancy, conditions, in_plain_units
+from diagnose.fit.signal_discrepancy import SignalDiscrepancy, condition_labels, with_white_noise
 from diagnose.noise.estimate import noise_models
 from diagnose.signals.reading import average_blocks
 from diagnose.signals.recording import Recording
@@ -17,7 +17,7 @@ OFF = 0.03
 
 
 def samples_of(recording):
-    return in_plain_units(Samples(recording, noise_models(recording)))
+    return with_white_noise(Samples(recording, noise_models(recording)))
 
 
 def off_by(samples, share):
@@ -58,7 +58,7 @@ def test_a_press_that_drowns_in_noise_counts_next_to_nothing():
     first = recording.runs[0]
     weak = replace(first, channels=first.channels | {name: 0.01 * first.channels[name] for name in first.answers})
     noise = noise_models(recording)
-    samples = in_plain_units(Samples(Recording((weak, *recording.runs[1:])), noise))
+    samples = with_white_noise(Samples(Recording((weak, *recording.runs[1:])), noise))
     stronger = 1.1 * np.random.default_rng(5).standard_normal(len(samples))
     assert (SignalDiscrepancy(samples).sizes(stronger) < 0.01).all()
 
@@ -79,4 +79,4 @@ def test_runs_that_repeat_each_other_are_one_condition():
     runs = [*recording.runs, *(run.__class__(**{**vars(run), "label": f"{run.label} again"}) for run in again.runs)]
     samples = samples_of(Recording(tuple(runs)))
     assert len(samples.presses) == 6
-    assert len(np.unique(conditions(samples))) == 3
+    assert len(np.unique(condition_labels(samples))) == 3
