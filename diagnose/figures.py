@@ -1,14 +1,14 @@
-"""Numbers as people read them: one way for each kind, so that a number looks the same wherever it is printed."""
+"""Numbers as text: one way for each kind, so that a number looks the same wherever it is printed."""
 
 from math import floor, isfinite, log10
 
-LEAST_P = 1e-16
-"""Below it, tails of probability distributions are no longer told apart from round-off."""
+LEAST_P_VALUE = 1e-16
+"""p-value below which tails of probability distributions are round-off."""
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def figure(value: float | None, digits: int = 2) -> str:
-    """Significant digits; a power of ten only below 1e-4 and from 1e6 on; the sign of minus. None: not known."""
+    """Number as text with significant digits; a power of ten only below 1e-4 and from 1e6 on. None: "unknown"."""
     if value is None or value != value:
         return "unknown"
     if not isfinite(value):
@@ -26,12 +26,12 @@ def _plain(value: float, digits: int) -> str:
 
 
 def percent(share: float | None) -> str:
-    """0.026 -> 2.6 %."""
+    """Share as a percentage: 0.026 -> 2.6 %."""
     return figure(share) if share is None else f"{figure(100.0 * share)} %"
 
 
-def part(share: float) -> str:
-    """A share of a whole as a percentage that says 0 or 100 only where nothing or everything is meant."""
+def part_percent(share: float) -> str:
+    """Share of a whole as a percentage that says 0 or 100 only where nothing or everything is meant."""
     if 0.0 < share < 0.001:
         return "less than 0.1 %"
     if 0.99 < share < 1.0:
@@ -40,19 +40,19 @@ def part(share: float) -> str:
 
 
 def probability(value: float | None) -> str:
-    """A probability, which is never quite 0 or 1."""
+    """Probability as text, which is never quite 0 or 1."""
     if value is None:
         return figure(value)
     return "< 0.001" if value < 0.001 else "> 0.999" if value > 0.999 else figure(value)
 
 
-def p_equals(value: float, least: float = LEAST_P) -> str:
-    """p = 0.021; p < 10⁻¹⁶ where the tail is too thin to calculate; p ≤ least where no smaller value was possible."""
-    if value < LEAST_P:
+def p_equals(value: float, least: float = LEAST_P_VALUE) -> str:
+    """p-value as text: p = 0.021; p < 10⁻¹⁶ for any smaller one; p ≤ least where no value below that was possible."""
+    if value < LEAST_P_VALUE:
         return "p < 10⁻¹⁶"
     return f"p ≤ {figure(value)}" if value == least else f"p = {figure(value)}"
 
 
 def p_alone(value: float | None) -> str:
-    """A p-value for a column of them, without its name."""
+    """p-value for a column of them, without its name."""
     return figure(value) if value is None else p_equals(value).removeprefix("p ").removeprefix("= ")

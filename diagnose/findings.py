@@ -1,4 +1,4 @@
-"""What a diagnosis found: everything that the verdict and the report are written from."""
+"""Findings of a diagnosis: everything that the verdict and the report are written from."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -11,9 +11,10 @@ from foundation.arrays import Floats
 
 @dataclass(frozen=True)
 class Detection:
-    """statistic : largest score over all cells and pools; p_value : family-wise; level : it is a mismatch below.
+    """The test for a mismatch. statistic : largest score over all cells and pools; p_value : family-wise.
 
-    least_p_value : the smallest that the random draws can give. noise : (label, channel) -> summary of its noise model.
+    level : below it the p-value means a mismatch. least_p_value : the smallest that the random draws can give. noise :
+    (label, channel) -> summary of its noise model.
     """
 
     statistic: float
@@ -25,9 +26,9 @@ class Detection:
 
 @dataclass(frozen=True)
 class LocatedExcess:
-    """A cell of the residual of the baseline. score : nearly standard normal; p_value : family-wise.
+    """A cell of the baseline's residual in which an excess was found. score : nearly standard normal.
 
-    share : of all excess. component : whose sensitivities explain most of it here, "" for none.
+    p_value : family-wise. share : of all excess. component : whose sensitivities explain most of it here, "" for none.
     """
 
     run: str
@@ -58,8 +59,8 @@ class Interval:
     fixed: bool = False
 
     @property
-    def bounded(self) -> bool:
-        """Whether an end is not set by the recordings."""
+    def limited_by_search(self) -> bool:
+        """Whether an end is where the search ended, and not set by the recordings."""
         return self.low_searched or self.high_searched
 
 
@@ -83,15 +84,15 @@ class FittedModel:
     shared: Mapping[str, float] = field(default_factory=dict)
 
     def with_intervals(self) -> "FittedModel":
-        """With those that were still to be found."""
+        """This model with the intervals of its parameters, which are found now if they were not yet."""
         return self if self.intervals is None else replace(self, parameters=self.intervals(), intervals=None)
 
 
 @dataclass(frozen=True)
 class Fit:
-    """Errors as root mean square over that of the recording, without samples that are missing or saturated.
+    """Errors of a fit as root mean square over that of the recording, without samples that are missing or saturated.
 
-    presses : those that are meant. noise_floor : the error that noise alone makes.
+    presses : names of the presses that are meant. noise_floor_nrmse : the error that noise alone makes.
     """
 
     presses: tuple[str, ...]
@@ -102,22 +103,22 @@ class Fit:
 
     @property
     def improves(self) -> bool:
-        """Whether the error is less than before."""
+        """Whether the error with the mechanisms is less than without."""
         return self.nrmse_after < self.nrmse_before
 
     @property
     def excess_before(self) -> float:
-        """Square of the error above that of noise, at least 0, without a mechanism."""
+        """Square of the error without a mechanism above that of noise, at least 0."""
         return max(self.nrmse_before**2 - self.noise_floor_nrmse**2, 0.0)
 
     @property
     def excess_after(self) -> float:
-        """The same with the mechanisms."""
+        """Square of the error with the mechanisms above that of noise, at least 0."""
         return max(self.nrmse_after**2 - self.noise_floor_nrmse**2, 0.0)
 
     @property
     def share(self) -> float:
-        """Share of the excess over noise that is taken away; 0 where there was none."""
+        """Share of the excess over noise that the mechanisms take away; 0 where there was none."""
         return 1.0 - self.excess_after / self.excess_before if self.excess_before > 0.0 else 0.0
 
 
@@ -133,7 +134,7 @@ class Grade(StrEnum):
 
 @dataclass(frozen=True)
 class Remainder:
-    """share : of the excess over noise that the main part accounts for in conditions that it was not fitted to.
+    """Rest beside a main part. share : of the excess over noise that the main part explains where it was not fitted.
 
     by_phase : phase -> share of what it leaves.
     """
@@ -187,12 +188,12 @@ class Findings:
 
     @property
     def comes_closer(self) -> bool:
-        """Whether the first model, although it is not named, predicts held-out presses better than your simulation."""
+        """Whether the first model, although it is not named, predicts held-out presses better than the baseline."""
         return self.unnamed is not None and self.unnamed.improves
 
     @property
     def grade(self) -> Grade:
-        """How much they say."""
+        """Grade of the verdict: how much it says of what is missing."""
         if not self.mismatch:
             return Grade.AGREEMENT
         if self.best is not None and not self.unexplained:

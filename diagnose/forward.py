@@ -1,4 +1,4 @@
-"""What a diagnosis asks of a forward model, whatever solves it: the segment in 3D, a coupon, a proportional sensor."""
+"""Forward models as a diagnosis sees them, whatever solves them: the segment in 3D, a coupon, a proportional sensor."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -58,7 +58,7 @@ class Candidate:
 
     @property
     def traits(self) -> Traits:
-        """Of its mechanism."""
+        """Traits of its mechanism."""
         return traits_of(self.mechanism)
 
     @property
@@ -66,15 +66,15 @@ class Candidate:
         """Mechanism and component."""
         return self.mechanism, self.component
 
-    def ordinary(self, values: Sequence[float]) -> bool:
-        """Whether a careful laboratory's rig has as much of it."""
+    def is_ordinary(self, values: Sequence[float]) -> bool:
+        """Whether a careful laboratory's rig has as much of it as with values (q,)."""
         if not self.everyday:
             return False
         found = {**self.parameters(values), **self.derived(values)}
         return all(found[name] <= most for name, most in self.everyday.items())
 
     def as_mechanism(self, values: Sequence[float]) -> Mechanism:
-        """The mechanism as a configuration has it. ValueError for values beyond its bounds."""
+        """Mechanism with values (q,) as a configuration has it. ValueError for values beyond its bounds."""
         return Mechanism(name=self.mechanism, component=self.component, parameters=self.parameters(values))
 
 
@@ -99,38 +99,38 @@ class Engine(Protocol):
 
     @property
     def name(self) -> str:
-        """For the verdict."""
+        """Name of the model for the verdict."""
 
     @property
     def accuracy(self) -> Mapping[str, float]:
-        """Channel without number -> relative sigma."""
+        """Relative error, one sigma, by channel without number."""
 
     @property
     def candidates(self) -> tuple[Candidate, ...]:
-        """In any order."""
+        """Candidates for what may be missing, in any order."""
 
     @property
     def free_nuisances(self) -> tuple[Candidate, ...]:
-        """None where everything is stated."""
+        """Nuisances that every fit finds anew; none where everything is stated."""
 
     @property
     def shortfalls(self) -> tuple[str, ...]:
-        """So far."""
+        """Sentences on what could not be prepared so far."""
 
     def nuisance(self, name: str) -> Candidate | None:
-        """The candidate whose single coordinate is the relative error of "modulus.medium1", "thickness.film", "d31".
+        """Candidate whose single coordinate is the relative error of "modulus.medium1", "thickness.film" or "d31".
 
         None where the model has no such part.
         """
 
     def with_candidates(self, candidates: tuple[Candidate, ...]) -> Self:
-        """The engine with fewer candidates."""
+        """This engine with fewer candidates."""
 
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
-        """Do whatever full solves these candidates need, or recall them. Repeated calls cost nothing."""
+        """Do the full solves that these candidates need, or recall them. Repeated calls cost nothing."""
 
     def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:
-        """Do a full solve with each of these settings alone, so that near them predictions are as right as there.
+        """Do a full solve with each of these settings alone, so that predictions near them are as right as there.
 
         Returns those whose predictions have changed by more than an error that matters.
         """
@@ -144,7 +144,7 @@ class Engine(Protocol):
     def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
         """Every answer of a run that was not recorded: its drive as samples, readout and dot_offset_mm, no answers.
 
-        Every channel that the sensor has, by the names of the recording. ValueError with one sentence where this is
+        It has every channel of the sensor, by the names of the recording. ValueError with one sentence where this is
         beyond what the model can tell, such as deeper than was prepared or off the prepared position.
         """
 
@@ -153,11 +153,11 @@ class Engine(Protocol):
 
 
 class SolvedOutright:
-    """The part of diagnose.forward.Engine that is empty where every prediction is solved, in milliseconds."""
+    """Base of engines whose every prediction is solved, in milliseconds: nothing is prepared or refined."""
 
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
-        """Nothing."""
+        """Do nothing."""
 
     def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:
-        """Nothing: predictions are as right everywhere."""
+        """No settings, as predictions are as right everywhere."""
         return ()

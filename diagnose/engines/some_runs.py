@@ -1,4 +1,4 @@
-"""Some of the runs of a recording, and the engine of a recording for these alone."""
+"""An engine for some of the runs of a recording."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -11,11 +11,11 @@ from diagnose.fit.observed_model import ObservedModel
 from foundation.arrays import Bools, Floats
 
 MAX_BASELINE_ITERATIONS = 12
-NEGLIGIBLE_STEP_SIGMAS = 0.01  # of a posterior standard deviation: another step is not worth it
+NEGLIGIBLE_STEP_SIGMAS = 0.01  # posterior standard deviations: another step is not worth it
 LAG_GRID_POINTS = 41  # over three deviations either way
 MAX_HALVINGS = 5
 PLAUSIBLE_SIGMAS = 2.0  # of a prior
-CAP_SIGMAS = 4.0  # the same: what an explanation may not pull a nuisance beyond
+CAP_SIGMAS = 4.0  # of a prior: no explanation may pull a nuisance farther
 
 
 def fit_baseline(model: ObservedModel) -> LinearisedSystem:

@@ -14,7 +14,7 @@ from diagnose.forward import Signals
 from foundation.arrays import Floats
 
 FORM_ERROR = 0.05
-"""One sigma by which the effect of a mechanism may differ from that of the right one by its law alone."""
+"""One sigma, relative, by which the effect of the right mechanism may be wrong because of its law alone."""
 COSINES_PER_PRESS = 3
 RelativeErrors = Sequence[float]
 """Relative error of each channel, one sigma, in the order of the samples' channels."""

@@ -26,7 +26,7 @@ from foundation.arrays import Bools, Floats, Ints
 BANDS_HZ = (2.0, 5.0, 10.0, 20.0)
 MOST_WAVES_PER_PRESS = 100
 TANGENT_STEP_SHARE, START_RMS_SHARE = 2e-3, 1e-3  # of the deepest drive: steps of tangents, and first guess
-MAX_EM_ITERATIONS, EM_TOLERANCE = 200, 1e-3  # the relative change of a variance that is none
+MAX_EM_ITERATIONS, EM_TOLERANCE = 200, 1e-3  # tolerance: relative change of a variance
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from scipy.linalg import cho_factor, cho_solve
 
 from foundation.arrays import Floats
 
-SMALLEST_PRIOR = np.finfo(float).tiny ** 0.25
+SMALLEST_PRIOR = np.finfo(float).tiny ** 0.25  # whitened: its inverse square stays finite
 RELATIVE_RIDGE = 1e-12  # relative to the square of a column's length: parallel columns without a prior
 
 

@@ -1,4 +1,4 @@
-"""Nuisance parameters, which float without counting as physics, run by run as declared, and the model's answer to them."""
+"""Nuisance parameters, which float without counting as physics: as declared, and how a model answers to them."""
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress

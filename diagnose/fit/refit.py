@@ -17,7 +17,7 @@ from diagnose.statistics.error_rates import LARGEST_FORM_SHARE
 from foundation.arrays import Floats
 
 MAX_REFIT_ROUNDS = 2
-NEAR_CHANGE_SIGMAS = 1.0  # changes of the whitened prediction below it leave variances as they are
+NEAR_CHANGE_SIGMAS = 1.0  # of the whitened prediction: for a smaller change variances need not be renewed
 FORM_ERROR_SHARES = np.array([0.0, 0.125, 0.25, 0.5, 1.0])  # of the largest model-form error
 
 

@@ -28,7 +28,7 @@ POOLS: tuple[frozenset[str], ...] = tuple(
 
 NEGLIGIBLE_SHARED_NOISE = 1e-3  # of the noise: what channels share is no more than that
 SharedNoise = Sequence[Signals]
-"""For each run, channel -> (t, k): their combinations with standard normal weights are noise that channels share."""
+"""Columns (t, k) by channel for each run, whose combinations with standard normal weights channels share as noise."""
 
 
 @dataclass(frozen=True)

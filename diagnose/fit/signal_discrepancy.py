@@ -18,7 +18,7 @@ from foundation.arrays import Floats, Ints
 
 SMALLEST_SQUARE = np.finfo(float).tiny ** 0.5
 VISIBLE_ERROR = 0.01
-"""Root mean square error relative to the signal, above noise, below which flaws of an ordinary rig may make it."""
+"""Root mean square error over the signal, above noise, up to which flaws of an ordinary rig may explain it."""
 
 
 def with_white_noise(samples: Samples) -> Samples:

@@ -30,9 +30,9 @@ FEWER_DRAWS = 499  # for models that are not the best
 
 @dataclass(frozen=True)
 class Judged:
-    """A fitted model and what is said of it; p_left is 1 where it leaves less than LEFT of the excess.
+    """A fitted model and what is said of it; p_left is 1 where it leaves less than LARGEST_SHARE_LEFT of the excess.
 
-    p_strained : of what floats beside it, 1 where it leaves less than LEFT of the baseline's strain.
+    p_strained : of what floats beside it, 1 where it leaves less than LARGEST_SHARE_LEFT of the baseline's strain.
     """
 
     fit: Fitted
@@ -266,4 +266,4 @@ def implausible(fit: Fitted) -> tuple[str, ...]:
 
 def ordinary(fit: Fitted) -> bool:
     """Whether a careful laboratory's rig has as much of all its mechanisms."""
-    return all(one.candidate.ordinary(one.values) for one in fit.settings)
+    return all(one.candidate.is_ordinary(one.values) for one in fit.settings)

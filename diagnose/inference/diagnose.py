@@ -35,7 +35,7 @@ from diagnose.inference.unexplained import with_main_part
 from diagnose.noise.estimate import noise_models
 from diagnose.signals.recording import Recording
 from diagnose.statistics.error_rates import RATES
-from diagnose.verdict.names import in_common
+from diagnose.verdict.names import common_words
 from foundation.progress import Report
 
 
@@ -144,7 +144,7 @@ def _findings(model: ObservedModel, screening: Screening, found: Checked, choice
         decision = worth_both(choice.decision, held_out, alone(model, screening, choice.models))
         choice = replace(choice, decision=decision)
     named, ambiguous = choice.decision.named, choice.decision.ambiguous and (held_out is None or held_out.improves)
-    kind = in_common([fits[number].settings for number in choice.groups[0]]) if ambiguous else ""
+    kind = common_words([fits[number].settings for number in choice.groups[0]]) if ambiguous else ""
     models = tuple(
         fitted_model(model, one, float(choice.probabilities[n]), detailed=named and n in choice.groups[0])
         for n, one in enumerate(choice.models)

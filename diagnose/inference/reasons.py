@@ -4,14 +4,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnose.figures import figure, p_equals, part, percent
+from diagnose.figures import figure, p_equals, part_percent, percent
 from diagnose.findings import Fit
 from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted
 from diagnose.forward import Candidate
 from diagnose.inference.choice import Choice, Judged, criteria
-from diagnose.verdict.names import listed
+from diagnose.verdict.names import join_words
 
 FAR = 3.0  # deviations of a prior
 
@@ -22,7 +22,7 @@ def named(fit: Fitted) -> str:
 
 
 def _names(candidates: Sequence[Candidate]) -> str:
-    return listed([f"{one.mechanism} ({one.component})" for one in candidates])
+    return join_words([f"{one.mechanism} ({one.component})" for one in candidates])
 
 
 def reasons_of(p_mismatch: float, choice: Choice | None) -> tuple[str, ...]:
@@ -36,7 +36,7 @@ def reasons_of(p_mismatch: float, choice: Choice | None) -> tuple[str, ...]:
 
 
 def _for(best: Judged) -> str:
-    share = part(1.0 - min(best.left, 1.0))
+    share = part_percent(1.0 - min(best.left, 1.0))
     return (
         f"The best explanation is {named(best.fit)}. It accounts for {share} of what your simulation leaves "
         f"unexplained and predicts held-out presses better by {figure(best.gain.mean)} nats per press (at least "
@@ -104,6 +104,6 @@ def closest(fit: Fitted, share: float) -> str:
     """What comes closest where errors count by their squares and nothing is a main part."""
     verb, it = ("comes", "It accounts") if len(fit.candidates) == 1 else ("come", "They account")
     return (
-        f"Where errors count by their squares, {named(fit)} {verb} closest. {it} for {part(max(share, 0.0))} of "
-        f"the excess in conditions that took no part in the fit; a main part accounts for more, and in all of them."
+        f"Where errors count by their squares, {named(fit)} {verb} closest. {it} for {part_percent(max(share, 0.0))} "
+        f"of the excess in conditions that took no part in the fit; a main part accounts for more, and in all of them."
     )

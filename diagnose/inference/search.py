@@ -30,7 +30,7 @@ class FirstFit:
 
 
 def first_fits(model: ObservedModel, found: Screening, report: Report) -> list[FirstFit]:
-    """Survivors fitted in one metric, the best of them, FINALISTS at most, first."""
+    """Survivors fitted in one metric, the best of them, MOST_FINALISTS at most, first."""
     common = common_metric(model.samples, found.start)
     firsts = []
     for count, number in enumerate(found.survivors):

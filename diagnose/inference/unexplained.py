@@ -10,7 +10,7 @@ from diagnose.inference.findings_of_fits import fitted_model, improved_signals, 
 from diagnose.inference.main_part import MainPart, confirmed
 from diagnose.inference.reasons import closest, named
 from diagnose.inference.true_refit import trained_and_held
-from diagnose.verdict.names import in_common
+from diagnose.verdict.names import common_words
 
 
 def with_main_part(findings: Findings, main: MainPart, choice: Choice, rng: np.random.Generator) -> Findings:
@@ -71,7 +71,7 @@ def _with_kind(findings: Findings, main: MainPart, held_out: Fit | None, rng: np
 
     A kind that was told by the noise stays: what was not told apart is not by tolerating more.
     """
-    kind = in_common([main.models[n].fit.settings for n in main.group])
+    kind = common_words([main.models[n].fit.settings for n in main.group])
     return replace(_by_squares(findings, main, held_out, rng), kind=kind) if kind and not findings.kind else findings
 
 

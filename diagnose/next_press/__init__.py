@@ -1,1 +1,1 @@
-"""Which press to make next, so that the explanations that are left part most clearly."""
+"""The press to make next, by which the explanations that are left differ most clearly."""

@@ -1,4 +1,4 @@
-"""How far apart rivals are in a proposed press, in sigma, once all that may float has floated as far as is still open.
+"""Distances between rivals in a proposed press, in sigma, once all that may float has floated as far as is still open.
 
 What may float is what an inference excuses too: nuisances, errors of the model, and of each mechanism's law. The press
 is a recording of one run that nobody has made yet.
@@ -40,11 +40,11 @@ class ImaginedEngine:
         self.free_nuisances = engine.free_nuisances
 
     def nuisance(self, name: str) -> Candidate | None:
-        """As the engine."""
+        """Candidate of a nuisance, from the engine."""
         return self._engine.nuisance(name)
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
-        """All channels of the press. ValueError where the engine cannot tell."""
+        """Signals of all channels in the press. ValueError where the engine cannot tell."""
         kept = [setting for setting in settings if setting.candidate.mechanism != self._proposal.removes]
         if hasattr(self._engine, "imagine"):  # also a repeat, which finds the specimen as all runs have left it
             return self._engine.imagine(self._proposal.run, kept)
@@ -53,13 +53,13 @@ class ImaginedEngine:
         return self._engine.predict(self._proposal.number, kept)
 
 
-STEP = 1e-3  # of a coordinate, for its slope
-ADDED_NOISE = 0.005  # of the largest signal: one sigma of an instrument that is not there yet
+SLOPE_STEP_SHARE = 1e-3  # of a coordinate, for its slope
+ADDED_NOISE_SHARE = 0.005  # of the largest signal: one sigma of an instrument that is not there yet
 
 
 @dataclass(frozen=True)
 class ImaginedAnswer:
-    """What one rival says of a press. prediction : (n,) whitened. slopes : (n, q) by its coordinates."""
+    """Prediction of one rival for a press. prediction : (n,) whitened. slopes : (n, q) by its coordinates."""
 
     system: LinearisedSystem
     prediction: Floats
@@ -67,57 +67,65 @@ class ImaginedAnswer:
 
 
 class PressJudge:
-    """Rivals, and spreads (q, q): for each a root of the covariance that the recording leaves to its coordinates."""
+    """Rivals, and what the recording tells of their coordinates.
+
+    spreads : (q, q) for each rival, a root of the covariance that the recording leaves to its coordinates.
+    """
 
     def __init__(self, recording: Recording, engine: Engine, rivals: Sequence[FittedModel]) -> None:
-        """ValueError as the engine's."""
+        """Learn from the recording what it leaves open. ValueError where the engine cannot tell."""
         self.engine = engine
         self.rivals = [replace(rival, settings=without_phase(rival.settings)) for rival in rivals]
         self.specimen, self.noise = recording.specimen, noise_models(recording)
         model = ObservedModel(Samples(recording, self.noise), engine)
-        self.spreads = [self._spread(self._answer(model, rival), rival.settings) for rival in self.rivals]
+        self.spreads = [
+            self._coordinate_root(self._rival_answer(model, rival), rival.settings) for rival in self.rivals
+        ]
 
     def separations(self, proposal: Proposal) -> Floats:
-        """(pairs,) sigma between each two rivals. ValueError where the engine cannot tell."""
-        answers = self.answers(proposal)
+        """Separations (pairs,) in sigma between each two rivals. ValueError where the engine cannot tell."""
+        answers = self.rival_answers(proposal)
         pairs = combinations(range(len(answers)), 2)
         return np.array([self._separation(answers[i], answers[j], self.spreads[i], self.spreads[j]) for i, j in pairs])
 
-    def answers(self, proposal: Proposal) -> list[ImaginedAnswer]:
-        """What each rival says of a press. ValueError where the engine cannot tell."""
+    def rival_answers(self, proposal: Proposal) -> list[ImaginedAnswer]:
+        """Predictions of a press by each rival. ValueError where the engine cannot tell."""
         run, engine = proposal.run, cast(Engine, ImaginedEngine(self.engine, proposal))
-        noise = {(run.label, name): self._noise(proposal, engine, name) for name in run.answers}
+        noise = {(run.label, name): self._channel_noise(proposal, engine, name) for name in run.answers}
         model = ObservedModel(Samples(Recording((run,), self.specimen), noise), engine)
-        return [self._answer(model, rival) for rival in self.rivals]
+        return [self._rival_answer(model, rival) for rival in self.rivals]
 
-    def _noise(self, proposal: Proposal, engine: Engine, channel: str) -> NoiseModel:
-        """Of the recording, or of an instrument that the press adds: white, a share of its largest signal."""
+    def _channel_noise(self, proposal: Proposal, engine: Engine, channel: str) -> NoiseModel:
+        """Noise of a channel of the press: that of the recording, else of an instrument that the press adds.
+
+        Such an instrument has white noise, a share of its largest signal.
+        """
         known = self.noise.get((proposal.run.label, channel))
         if known is not None:
             return known
         largest = float(np.abs(engine.predict(0, self.rivals[0].settings)[channel]).max())
-        return white_noise(ADDED_NOISE * largest, proposal.run.step_s, "assumed")
+        return white_noise(ADDED_NOISE_SHARE * largest, proposal.run.step_s, "assumed")
 
-    def _answer(self, model: ObservedModel, rival: FittedModel) -> ImaginedAnswer:
+    def _rival_answer(self, model: ObservedModel, rival: FittedModel) -> ImaginedAnswer:
         settings = rival.settings
         values = np.array([0.0 if n.run is not None else rival.shared.get(n.name, 0.0) for n in model.nuisances])
         prediction = model.vector(values, settings)
-        slopes = [(model.vector(values, moved) - prediction) / step for moved, step in _moved(settings)]
+        slopes = [(model.vector(values, moved) - prediction) / step for moved, step in _shifted_settings(settings)]
         return ImaginedAnswer(
             linearise(model, values, settings, FORM_ERROR),
             prediction,
             np.column_stack([np.zeros((len(prediction), 0)), *slopes]),
         )
 
-    def _spread(self, answer: ImaginedAnswer, settings: Sequence[Setting]) -> Floats:
-        """From what the recording tells of the coordinates, and what is plausible without it."""
+    def _coordinate_root(self, answer: ImaginedAnswer, settings: Sequence[Setting]) -> Floats:
+        """Root (q, q) of the covariance of coordinates, from the recording and from what is plausible without it."""
         widths = [c.high - c.low for setting in settings for c in setting.candidate.coordinates]
         slopes = answer.system.weighted_rows(answer.slopes)
         told = answer.system.quadratic.inner_products(slopes, slopes)
         return covariance_root(told + np.diag(np.square(1.0 / np.array(widths))))
 
     def _separation(self, one: ImaginedAnswer, other: ImaginedAnswer, *spreads: Floats) -> float:
-        """The expected separation of statistics/separation.py, by inner products: presses may have many samples."""
+        """Expected separation of statistics/separation.py, by inner products: presses may have many samples."""
         weight = 1.0 / np.sqrt(np.maximum(one.system.variance, other.system.variance))[:, None]
         open_still = np.column_stack([one.slopes @ spreads[0], other.slopes @ spreads[1]])
         columns = np.column_stack([open_still, one.system.nuisance_design, other.system.nuisance_design])
@@ -126,12 +134,12 @@ class PressJudge:
         return float(np.sqrt(max(Quadratic(weight * columns, sigma).square(difference), 0.0)))
 
 
-def _moved(settings: Sequence[Setting]) -> Iterator[tuple[list[Setting], float]]:
-    """The settings with one coordinate after the other a little nearer to the middle of its range, and by how much."""
+def _shifted_settings(settings: Sequence[Setting]) -> Iterator[tuple[list[Setting], float]]:
+    """Settings with one coordinate after the other moved a little towards the middle of its range, and by how much."""
     for number, setting in enumerate(settings):
         for which, coordinate in enumerate(setting.candidate.coordinates):
             value = setting.values[which]
             towards = 1.0 if value < 0.5 * (coordinate.low + coordinate.high) else -1.0
-            step = towards * STEP * (abs(value) + STEP * (coordinate.high - coordinate.low))
+            step = towards * SLOPE_STEP_SHARE * (abs(value) + SLOPE_STEP_SHARE * (coordinate.high - coordinate.low))
             values = tuple(v + step if n == which else v for n, v in enumerate(setting.values))
             yield [replace(s, values=values) if n == number else s for n, s in enumerate(settings)], step

@@ -1,4 +1,4 @@
-"""A press as a rig is told it: rest, in, hold, out, as often as wanted. Taken from a recorded one, then varied."""
+"""The shape of a press as a rig is told it: rest, in, hold, out, for a number of cycles; taken from a recording."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -40,10 +40,10 @@ class Shape:
 
     @property
     def duration_s(self) -> float:
-        """From the first sample to the last."""
+        """Duration in s from the first sample to the last."""
         return float(self.corners()[0][-1])
 
-    def sampled(self, step_s: float) -> tuple[Floats, Floats]:
+    def sample(self, step_s: float) -> tuple[Floats, Floats]:
         """Times and drive (t,) at even steps."""
         times, drive = self.corners()
         at = np.arange(0.0, times[-1] + 0.5 * step_s, step_s)
@@ -52,7 +52,7 @@ class Shape:
 
 
 def recorded_shape(recording: Recording, number: int) -> Shape | None:
-    """The deepest press of a run as a shape; None where it has no press with a rise and a release."""
+    """Shape of the deepest press of a run; None where no press has a rise and a release."""
     run = recording.runs[number]
     pressed = [_shape(run, press) for press in recording.phases[number].presses if _complete(press, run)]
     return max(pressed, key=lambda shape: shape.deep, default=None)

@@ -44,7 +44,7 @@ class Autoregression:
         return np.asarray(toeplitz(self.autocovariance(max(len(self.coefficients), 1))))
 
     def spectral_density(self, frequency_Hz: Floats, step_s: float) -> Floats:
-        """One-sided power spectral density (k,), in the square of the unit per hertz."""
+        """One-sided power spectral density (k,) at frequencies (k,), in the square of the channel's unit per hertz."""
         turns = np.exp(-2j * np.pi * np.outer(frequency_Hz * step_s, np.arange(1, len(self.coefficients) + 1)))
         return np.asarray(2.0 * step_s * self.variance / np.abs(1.0 - turns @ self.coefficients) ** 2)
 
@@ -68,7 +68,7 @@ def fit_autoregression(stretches: Sequence[Floats], least_variance: float = 0.0)
 
 
 def _with_least_variance(model: Autoregression, least_variance: float) -> Autoregression:
-    """The model, or white noise of the least variance where a silent channel would promise better."""
+    """The model, or white noise of the least variance where a silent channel would promise less."""
     if model.variance >= least_variance:
         return model
     total = max(least_variance, float(model.autocovariance(1)[0]))

@@ -90,8 +90,8 @@ def _stated_noise(run: Run, channel: str) -> NoiseModel:
     """White noise as rig.toml states it. InputError where it states none."""
     if channel not in run.noise:
         raise InputError(
-            f"recording '{run.file}', column {channel}: its noise is not known; record at least {ENOUGH_SAMPLES} samples "
-            f"before the touch, repeat the run, or state noise.{channel} of the run in rig.toml"
+            f"recording '{run.file}', column {channel}: its noise is not known; record at least {ENOUGH_SAMPLES} "
+            f"samples before the touch, repeat the run, or state noise.{channel} of the run in rig.toml"
         )
     white = white_noise(run.noise[channel], run.step_s, STATED)
     return replace(white, quantisation=quantisation_step(run.channels[channel]))

@@ -16,7 +16,7 @@ from foundation.arrays import Floats
 MAINS_HZ = (50.0, 60.0)
 MAINS_DEVIATION_HZ = 0.3  # of the mains' frequency
 HARMONICS = 10
-MOST_SEARCHED_SAMPLES = 20_000  # in which a line is sought; its frequency is then sharpened with all
+MOST_SEARCHED_SAMPLES = 20_000  # in which a line is sought; its frequency is then refined with all
 NEIGHBOUR_OFFSETS = np.array([-6.0, -5.0, -4.0, -3.0, -2.0, 2.0, 3.0, 4.0, 5.0, 6.0])  # in units of 1 / duration
 FALSE_ALARM_PROBABILITY = 1e-3  # of finding any line where there is none
 
@@ -37,7 +37,7 @@ def line_basis(lines: Sequence[Line], time_s: Floats) -> Floats:
 
 
 def find_lines(times_s: Sequence[Floats], stretches: Sequence[Floats], step_s: float) -> tuple[Line, ...]:
-    """The mains lines in stretches (n_i,) of zero mean at times (n_i,); none where they are too short to tell."""
+    """Mains lines in stretches (n_i,) of zero mean at times (n_i,) in s; none where they are too short to tell."""
     if not stretches:
         return ()
     longest = max(range(len(stretches)), key=lambda n: len(stretches[n]))
@@ -87,7 +87,7 @@ def _power_ratio(time: Floats, values: Floats, frequency: float, duration: float
 
 
 def _power_at(time: Floats, values: Floats, frequency: float) -> float:
-    """|mean of values exp(-2 pi i f t)|^2: a quarter of the squared amplitude of a sinusoid there."""
+    """Power at a frequency, |mean of values exp(-2 pi i f t)|^2: a quarter of the squared amplitude of a sinusoid."""
     return float(np.abs(np.mean(values * np.exp(-2j * np.pi * frequency * time))) ** 2)
 
 

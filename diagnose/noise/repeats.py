@@ -1,7 +1,7 @@
-"""Noise from repeated runs: how they differ from their mean. It holds what rest does not show, the scatter of presses.
+"""Noise from how repeated runs differ. It holds what rest does not show, the scatter of presses.
 
-Runs are repeats when all that the experimenter set is equal and the drives agree. Presses within one run are none:
-the second press of a soft material answers otherwise than the first, and that is physics.
+Runs are repeats when all that the experimenter set is equal and the drives agree. Presses within one run are none: the
+second press of a soft material answers otherwise than the first, and that is physics.
 """
 
 from collections.abc import Sequence

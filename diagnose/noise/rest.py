@@ -1,4 +1,4 @@
-"""Samples at rest: nothing touches, or has touched for a while, so what is recorded is noise."""
+"""Samples at rest, which hold noise alone: nothing touches, or has touched for a while."""
 
 import numpy as np
 

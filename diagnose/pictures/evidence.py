@@ -1,4 +1,4 @@
-"""Which explanation predicts held-out presses, and which component the excess belongs to."""
+"""Pictures of the evidence: which explanation predicts held-out presses, which component the excess belongs to."""
 
 from pathlib import Path
 
@@ -7,12 +7,12 @@ from diagnose.findings import Findings, FittedModel
 from diagnose.pictures.style import AFTER, BEFORE, RECORDED, SOFT, new_figure, save
 from diagnose.verdict.names import component_words, short_name
 
-MOST = 10
+MOST_BARS = 10
 
 
 def draw_gains(findings: Findings, path: Path) -> Path | None:
-    """Held-out gain of each fitted model over your simulation, with its lower bound; None where none was fitted."""
-    models = findings.models[:MOST]
+    """Draw the held-out gain of each fitted model over your simulation, with its lower bound; None without a model."""
+    models = findings.models[:MOST_BARS]
     if not models:
         return None
     names = [short_name([setting.candidate for setting in model.settings]) for model in models]
@@ -38,7 +38,7 @@ def _colour(model: FittedModel, findings: Findings) -> str:
 
 
 def draw_shares(findings: Findings, path: Path) -> Path | None:
-    """Share of the excess that belongs to each component; None where none was told apart."""
+    """Draw the share of the excess that belongs to each component; None where no component stands out."""
     shares = sorted(((share, name) for name, share in findings.shares.items() if share > 0.0), reverse=True)
     if not shares:
         return None

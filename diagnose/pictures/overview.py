@@ -1,4 +1,4 @@
-"""Where the simulation is off, at a glance: runs by phases and frequencies."""
+"""Picture of where the simulation is off: runs by phases and frequencies."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -11,20 +11,20 @@ from diagnose.signals.phases import PHASES
 from diagnose.signals.recording import Recording
 from foundation.arrays import Floats
 
-EDGES_HZ = (0.0, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, np.inf)
+BAND_EDGES_HZ = (0.0, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, np.inf)
 MOST_ROWS = 40
 
 
 def draw_overview(recording: Recording, findings: Findings, path: Path) -> Path | None:
-    """The share of the excess in each cell of run and channel by phase and band; None where no place stands out."""
+    """Draw the share of the excess in each cell of run and channel by phase and band; None without a place."""
     if not findings.places:
         return None
     from matplotlib.colors import PowerNorm
 
     rows = [(run.label, channel) for run in recording.runs for channel in run.answers][:MOST_ROWS]
     phases = list(PHASES)
-    bands = sorted({band_of(place) for place in findings.places})
-    tables = {phase: shares(findings.places, rows, phase, bands) for phase in phases}
+    bands = sorted({band_number(place) for place in findings.places})
+    tables = {phase: excess_percent(findings.places, rows, phase, bands) for phase in phases}
     largest = max(float(np.nanmax(table, initial=0.0)) for table in tables.values())
     scale = PowerNorm(0.5, 0.0, largest or 1.0)  # the weak must show beside the strong
     figure, panels = new_figure(1, len(phases), 1.6 + 0.28 * len(rows), sharey=True)
@@ -42,27 +42,27 @@ def draw_overview(recording: Recording, findings: Findings, path: Path) -> Path 
     return save(figure, path)
 
 
-def shares(
+def excess_percent(
     places: Sequence[LocatedExcess], rows: Sequence[tuple[str, str]], phase: str, bands: Sequence[int]
 ) -> Floats:
-    """Per cent, (rows, bands), summed over presses; NaN where nothing stands out."""
+    """Excess in per cent (rows, bands), summed over presses; NaN where nothing stands out."""
     table = np.full((len(rows), len(bands)), np.nan)
     for place in places:
         if place.phase == phase and (place.run, place.channel) in rows:
-            cell = rows.index((place.run, place.channel)), bands.index(band_of(place))
+            cell = rows.index((place.run, place.channel)), bands.index(band_number(place))
             table[cell] = np.nansum([table[cell], 100.0 * place.share])
     return table
 
 
-def band_of(place: LocatedExcess) -> int:
-    """Number of the column that holds the (logarithmic) middle of a band."""
+def band_number(place: LocatedExcess) -> int:
+    """Number of the column that holds the (logarithmic) middle of a place's band."""
     low, high = place.band_Hz
     middle = float(np.sqrt(max(low, 0.25 * high) * high)) if np.isfinite(high) else low
-    return int(np.searchsorted(EDGES_HZ, middle, side="right")) - 1
+    return int(np.searchsorted(BAND_EDGES_HZ, middle, side="right")) - 1
 
 
 def _band_text(band: int) -> str:
-    low, high = EDGES_HZ[band], EDGES_HZ[band + 1]
+    low, high = BAND_EDGES_HZ[band], BAND_EDGES_HZ[band + 1]
     return f"< {high:g}" if low == 0.0 else f"> {low:g}" if np.isinf(high) else f"{low:g}–{high:g}"
 
 

@@ -1,4 +1,4 @@
-"""What all pictures of a diagnosis share: colours, size, frame."""
+"""Colours, size and frame of all pictures of a diagnosis."""
 
 from pathlib import Path
 from typing import Any
@@ -25,7 +25,7 @@ def new_figure(rows: int, columns: int, height_in: float, **subplots: Any) -> tu
 
 
 def save(figure: Any, path: Path) -> Path:
-    """Write a PNG and return its path."""
+    """Write a figure as PNG and return its path."""
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path)
     return path

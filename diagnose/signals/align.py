@@ -1,9 +1,9 @@
-"""Lag and clock ratio between two signals that were sampled on two clocks.
+"""The lag between two signals that were sampled on two clocks.
 
 The lag maximises the likelihood of signal(t) = a reference(t - lag) + b + noise: the peak of the cross-correlation,
-refined below the sampling step by Gauss-Newton on a cubic spline. Its variance is the Cramer-Rao bound of a delay
-(Kay, Fundamentals of Statistical Signal Processing: Estimation Theory, 1993, example 3.13), with the
-covariance of an autoregression that is fitted to what is left.
+refined below the sampling step by Gauss-Newton on a cubic spline. Its variance is the Cramer-Rao bound of a delay (Kay,
+Fundamentals of Statistical Signal Processing: Estimation Theory, 1993, example 3.13), with the covariance of an
+autoregression that is fitted to what is left.
 """
 
 from dataclasses import dataclass

@@ -22,7 +22,7 @@ NUMBERED_VOLTAGE = re.compile(r"voltage_[1-9][0-9]*_V")
 
 
 def refuse_by_size(files: Iterable[Path]) -> None:
-    """InputError, before anything is read, for a missing file and for files that are too large together."""
+    """Refuse missing files, and files that are too large together, before anything is read. InputError."""
     total = 0.0
     for file in files:
         size = regular_file_size(file, f"recording '{file}'") / 1e6

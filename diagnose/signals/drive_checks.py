@@ -14,12 +14,13 @@ from foundation.arrays import Bools, Floats
 from foundation.errors import InputError
 
 OPPOSED_CORRELATION = -0.5
-"""Correlation of a displacement with a force: below it one of the two has the wrong sign."""
+"""Correlation of a displacement with a force below which one of the two has the wrong sign."""
 LARGEST_ADHESION_RATIO = 2.0
-"""A dot that is let go may pull, but hardly with this many times the force of its press."""
+"""Pull over push of a dot: one that is let go may adhere, but hardly with more than this."""
 LOWEST_RANGE_SHARE, FLAT_SLOPE_SHARE = 0.15, 0.1
-"""Where the drive is lowest, in shares of its range, a force that rises less than this part of the whole rise has not
-begun to: of a sphere's it is two fifths (Hertz), of a flat punch's all.
+"""Lowest share of the drive's range, and the slope of the force there over that of the whole press.
+
+A force with less slope has not begun to rise: that of a sphere has two fifths (Hertz), that of a flat punch all.
 """
 SHALLOWEST_MM = 0.002
 """By which a moulded surface gives way before it bears."""
@@ -29,7 +30,9 @@ DRIFT_RANGE_SHARE = 0.1  # of the range of a force, between the samples before a
 
 
 def refuse_unlike_drive(run: Run, path: Path, specimen: Specimen | None, height_mm: float) -> None:
-    """InputError for a drive of the wrong sign, without a zero at the first touch, or deeper than the stack is high.
+    """Refuse a drive of the wrong sign, without a zero at the first touch, or deeper than the stack is high.
+
+    InputError.
 
     height_mm : of the segment, infinite where it is not known.
     """
@@ -142,6 +145,7 @@ def _refuse_wrong_sign_of_coupon(run: Run, specimen: Specimen, where: str) -> No
 
 
 def _refuse_off_zero(run: Run, where: str, height_mm: float) -> None:
+    """InputError for a displacement deeper than the segment, or far from 0 where the force has not begun to rise."""
     drive = run.drive_values
     deepest = float(drive.max())
     if deepest > height_mm:

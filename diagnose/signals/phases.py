@@ -17,9 +17,8 @@ FEWEST_REST_SAMPLES = 8
 MOVING_DEVIATIONS = 3.0  # change over the lead, in standard deviations about its straight line
 SHALLOW_DEPTH_SHARE = 0.05  # of the deepest: what is lower is no press
 BRIEF_LENGTH_SHARE = 0.05  # of the longest: what is shorter is a spike
-REBOUND_DEPTH_SHARE = (
-    0.2  # of the press before: what is shallower and follows within the length of that press has bounced
-)
+REBOUND_DEPTH_SHARE = 0.2
+"""Share of a press's depth below which a press that follows within the length of that press is a rebound."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +38,7 @@ class PressPhases:
 
     @property
     def bounds(self) -> tuple[int, ...]:
-        """The six bounds in order."""
+        """Numbers of the samples that bound the phases, in order: start, touch, held, released, clear, end."""
         return (self.start, self.touch, self.held, self.released, self.clear, self.end)
 
 
@@ -152,7 +151,7 @@ def _smooth(course: Floats) -> Floats:
 
 
 def _loading_rate(time: Floats, smooth: Floats, peak: float) -> float:
-    """Mean rate from a tenth to nine tenths of the peak; infinite where both are one sample."""
+    """Mean rate of loading from a tenth to nine tenths of the peak; infinite where both are one sample."""
     low, high = int(np.argmax(smooth >= 0.1 * peak)), int(np.argmax(smooth >= 0.9 * peak))
     return float(0.8 * peak / (time[high] - time[low])) if high > low else np.inf
 

@@ -145,11 +145,11 @@ def _refuse_unknown_noise(table: RunTable, columns: Mapping[str, Floats], folder
 
 
 ENOUGH_SAMPLES = 15_000
-"""Samples of a channel over all runs: as many as a diagnosis handles in a minute."""
+"""Number of samples of a channel over all runs that a diagnosis handles in a minute."""
 LEAST_RATE_HZ = 250.0
-"""No recording gets slower: mains and their second harmonic stay visible, and so does every press by hand."""
+"""Least rate after averaging: mains and their second harmonic stay visible, and so does every press by hand."""
 ENOUGH_COUPON_SAMPLES, LEAST_LOADING_SAMPLES = 5_000, 50
-"""The same for a coupon, each sample of which is an equilibrium to solve; what stays is counted while it is loaded."""
+"""Samples of a coupon, each of which is an equilibrium to solve, and the least number of them in its loadings."""
 
 
 def thin_recording(recording: Recording) -> Recording:

@@ -32,7 +32,7 @@ Drive = Literal["displacement_mm", "force_N"]
 
 
 class RunTable(Table):
-    """One file of samples and what the experimenter believes of it."""
+    """Table of one run: its file of samples and what the experimenter believes of it."""
 
     file: str = Field(description="CSV file in the folder of rig.toml")
     label: str | None = Field(None, description="name in the report; none: the name of the file")
@@ -134,10 +134,10 @@ def _flatten(table: Mapping[str, Any]) -> dict[str, Any]:
     return flat
 
 
-MEDIAN_WINDOW_STEPS = (
-    9  # of the running median of time steps: a single late sample is a gap, five in a row are another rate
-)
-GAP_RATIO, OTHER_RATE_RATIO = 1.5, 1.2  # ratios to the running median, and of the running median to the one before
+MEDIAN_WINDOW_STEPS = 9
+"""Window of the running median of time steps: a single late sample is a gap, five in a row are another rate."""
+GAP_RATIO, OTHER_RATE_RATIO = 1.5, 1.2
+"""Ratios of a step to the running median, and of the running median to the one before."""
 
 
 def even_pieces(time_s: Floats) -> tuple[slice, ...]:

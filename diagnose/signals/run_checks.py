@@ -1,4 +1,4 @@
-"""What a run must be to say anything, and what is suspicious about one that is good enough."""
+"""Checks of a run: what it must be to say anything, and what is suspicious about one that is good enough."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,14 +13,14 @@ from foundation.errors import InputError
 
 FEWEST_SAMPLES = 8
 LARGEST_COUPON_STRAIN = 30.0  # no specimen is stretched beyond it
-MOST_LISTED_RATES = 4  # that are listed
+MOST_LISTED_RATES = 4
 CHANNEL_UNITS = ("V", "N", "mm")
 UNEVEN_JUMP_SHARE = 0.05  # share of jumps above which sampling is called uneven
 LEAST_SAMPLES_PER_PERIOD = 4.0  # two are the theorem's; an anti-aliasing filter and a fit need more
 
 
 def refuse_bad_time(time_s: Floats, file: Path) -> None:
-    """InputError for too few samples, a missing time, or one that does not increase."""
+    """Refuse too few samples, a missing time, or one that does not increase. InputError."""
     if len(time_s) < FEWEST_SAMPLES:
         samples = "1 sample" if len(time_s) == 1 else f"{len(time_s)} samples"
         raise InputError(f"recording '{file}': has {samples}, at least {FEWEST_SAMPLES} are needed")
@@ -36,7 +36,7 @@ def refuse_bad_time(time_s: Floats, file: Path) -> None:
 
 
 def refuse_bad_columns(columns: Mapping[str, Floats], drive: str, file: Path) -> None:
-    """InputError for a missing drive, for nothing to explain, for double or dead channels."""
+    """Refuse a missing drive, nothing to explain, double or dead channels. InputError."""
     if drive not in columns:
         raise InputError(f"recording '{file}': column {drive} is missing, which drive names in rig.toml")
     channels = [name for name in columns if name.rpartition("_")[2] in CHANNEL_UNITS and not name.startswith("dot_")]
@@ -49,7 +49,7 @@ def refuse_bad_columns(columns: Mapping[str, Floats], drive: str, file: Path) ->
 
 
 def refuse_untouched(drive: str, time_s: Floats, values: Floats, file: Path) -> None:
-    """InputError for a run whose drive never leaves the clear, or its own noise."""
+    """Refuse a run whose drive never touches, or never leaves its own noise. InputError."""
     if not find_phases(time_s, values, drive == "displacement_mm").presses:
         raise InputError(
             f"recording '{file}', column {drive}: never rises out of its noise above {values.max():.3g}, "
@@ -58,7 +58,7 @@ def refuse_untouched(drive: str, time_s: Floats, values: Floats, file: Path) -> 
 
 
 def refuse_slow_sampling(run: Run, frequency_Hz: float, mechanism: str) -> None:
-    """InputError when a run is sampled too slowly for a mechanism that acts up to a frequency."""
+    """Refuse a run that is sampled too slowly for a mechanism that acts up to a frequency. InputError."""
     rate = 1.0 / run.step_s
     needed = LEAST_SAMPLES_PER_PERIOD * frequency_Hz
     if rate < needed:
@@ -102,6 +102,7 @@ def _suspicions_of_channels(run: Run, path: Path, travel_mm: float) -> list[str]
 
 
 def _suspicions_of_channel(run: Run, name: str, values: Floats, path: Path, largest: float) -> list[str]:
+    """Sentences on missing and saturated samples of a channel, and on values beyond the largest that is plausible."""
     missing, limited = int((~run.valid[name]).sum()), int(run.saturated[name].sum())
     peak = float(np.nanmax(np.abs(values)))
     said = []
@@ -122,7 +123,7 @@ def _suspicions_of_channel(run: Run, name: str, values: Floats, path: Path, larg
 
 
 def _refuse_dead(name: str, values: Floats, file: Path, drive: str) -> None:
-    """InputError for a channel without a sample, one that never changes, and a drive that is missing too often."""
+    """Refuse a channel without a sample, one that never changes, and a drive that is missing too often. InputError."""
     there = np.isfinite(values)
     if not there.any():
         raise InputError(f"recording '{file}', column {name}: every sample is missing")

@@ -1,4 +1,4 @@
-"""Samples at a limit of the recorder."""
+"""Samples that stand at a limit of the recorder."""
 
 import numpy as np
 

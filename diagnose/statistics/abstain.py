@@ -1,4 +1,4 @@
-"""The last word: name a mechanism, or say why not. One pure function of the evidence and of stated error rates."""
+"""The decision to name a mechanism or to say why not: one pure function of the evidence and of stated error rates."""
 
 from dataclasses import dataclass
 
@@ -8,9 +8,7 @@ from diagnose.statistics.error_rates import Rates
 
 @dataclass(frozen=True)
 class Evidence:
-    """What the decision is made from.
-
-    p_mismatch, p_left : family-wise p-values of the residual before and after a name.
+    """Evidence for or against a name. p_mismatch, p_left : family-wise p-values of the residual without and with it.
 
     p_strained : p-value of the parameter that lies farthest from its prior beside the best named model. gain_lower :
     lower bound of its held-out gain, corrected for all candidates. black_box_lower : the same of the black box over the
@@ -31,7 +29,7 @@ class Evidence:
 
 @dataclass(frozen=True)
 class Decision:
-    """What is said of a mismatch. named : the best model is named. unexplained : no known mechanism explains it.
+    """Decision on a mismatch. named : the best model is named. unexplained : no known mechanism explains the mismatch.
 
     reasons : sentences against a name. ambiguous : nothing speaks against a name but the number of models that share
     it.

@@ -1,4 +1,4 @@
-"""The press that would best tell the surviving rivals apart, before it is made.
+"""The choice of the press, before it is made, that best tells the surviving rivals apart.
 
 The separation of a proposed press is the distance in sigma between what two rivals predict for it, after the rival's
 parameters and the nuisances have moved as far as earlier presses leave them free (T-optimality: Atkinson and Fedorov,
@@ -21,7 +21,7 @@ def covariance_root(information: Floats) -> Floats:
 
 
 def best_press(separation: Floats, settled: float) -> int:
-    """Number of the press that parts most pairs of rivals by at least `settled` sigma.
+    """Number of the press that separates most pairs of rivals by at least `settled` sigma.
 
     separation : (presses, pairs) in sigma. Of equals it is the press whose least separated pair is farthest.
     """

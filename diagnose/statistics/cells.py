@@ -1,9 +1,9 @@
-"""Where and at which frequency: the residual cut into cells, each with a chi-square energy under white noise.
+"""The residual cut into cells of time and frequency, each with a chi-square energy under white noise.
 
-Every segment (samples in a row with the same run, channel, phase, cycle, position) gets an orthonormal cosine
-transform (DCT-II; Ahmed, Natarajan and Rao, IEEE Trans. Comput. 23 (1974) 90), and its coefficients are sorted into
-bands. The transform keeps sums of squares (Parseval), so cells are disjoint, cover everything, and the energy of a cell
-of white noise is chi-square with as many degrees of freedom as it has coefficients.
+Every segment (samples in a row with the same run, channel, phase, cycle, position) gets an orthonormal cosine transform
+(DCT-II; Ahmed, Natarajan and Rao, IEEE Trans. Comput. 23 (1974) 90), and its coefficients are sorted into bands. The
+transform keeps sums of squares (Parseval), so cells are disjoint, cover everything, and the energy of a cell of white
+noise is chi-square with as many degrees of freedom as it has coefficients.
 """
 
 from collections.abc import Mapping, Sequence
@@ -81,7 +81,10 @@ class FilterBank:
     """
 
     def __init__(self, pieces: Sequence[TimeSegment], edges_Hz: Floats) -> None:
-        """edges_Hz : (k,) ascending from 0; what lies above the last one joins the highest band."""
+        """Sort the coefficients of time segments.
+
+        edges_Hz : (k,) from 0 up; what lies above the last joins the highest band.
+        """
         self.pieces = tuple(pieces)
         self._transform = CosineTransform(self.pieces)
         cells: list[Cell] = []

@@ -1,4 +1,4 @@
-"""How much of the excess each component of the 3D model can explain.
+"""Shares of the excess that each component of the 3D model can explain.
 
 The residual is fitted by the sensitivities of a set of components. What a component adds to the explained sum of
 squares depends on which others came before; its share is the mean over all orders (Shapley 1953; Lindeman, Merenda and

@@ -15,9 +15,8 @@ from diagnose.statistics.held_out import Forecast, forecast
 from diagnose.statistics.linear_gaussian import Sums
 from foundation.arrays import Bools, Floats, Ints
 
-STRENGTHS_SIGMA = np.logspace(
-    -2.0, 6.0, 17
-)  # of the response, in sigma of the noise over all samples: where s is sought
+STRENGTHS_SIGMA = np.logspace(-2.0, 6.0, 17)
+"""Strengths of the response at which s is sought, in sigma of the noise over all samples."""
 
 
 def doubling_edges(longest: int) -> Ints:

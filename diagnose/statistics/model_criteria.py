@@ -1,4 +1,4 @@
-"""A second opinion on the choice: Schwarz's criterion, and probabilities of the models."""
+"""Criteria for the choice of a model: Schwarz's, and probabilities from held-out scores."""
 
 import numpy as np
 from scipy.special import softmax

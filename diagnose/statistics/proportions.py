@@ -1,4 +1,4 @@
-"""How often something may happen: Wilson's interval of a proportion, and the rate that keeps a promise on a count."""
+"""Proportions: Wilson's interval of one, and the rate per case that keeps a promise on a count."""
 
 from math import sqrt
 
@@ -19,7 +19,7 @@ def wilson_interval(successes: int, trials: int, level: float = 0.95) -> tuple[f
 
 
 def rate_for_promise(allowed: int, cases: int, confidence: float = 0.99) -> float:
-    """The largest rate per case at which at most `allowed` of `cases` events occur with this confidence.
+    """Largest rate per case at which at most `allowed` of `cases` events occur with this confidence.
 
     It solves P(Binomial(cases, rate) <= allowed) = confidence, by the beta distribution (Clopper and Pearson,
     Biometrika 26 (1934) 404).

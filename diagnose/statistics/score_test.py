@@ -14,12 +14,10 @@ from diagnose.statistics.chi_bar_square import chi_bar_survival, chi_bar_weights
 from diagnose.statistics.nuisance_projection import orthonormal_basis
 from foundation.arrays import Bools, Floats
 
-NEGLIGIBLE_P_VALUE = (
-    1e-12  # where the chance that all degrees of freedom give is as small, the weights of fewer do not matter
-)
-LEAST_INDEPENDENT_SHARE = (
-    1e-6  # of its length: what is left of a sensitivity that others in the same candidate already make
-)
+NEGLIGIBLE_P_VALUE = 1e-12
+"""p-value with all degrees of freedom below which the weights of fewer degrees do not matter."""
+LEAST_INDEPENDENT_SHARE = 1e-6
+"""Share of a sensitivity's length below which the rest is round-off of the others in the same candidate."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +62,7 @@ def score_test(
 
 
 def _least_squares(columns: Floats, target: Floats) -> Floats:
-    """Coefficients (q,), the same fit in any units of the columns (n, q)."""
+    """Least-squares coefficients (q,), the same fit in any units of the columns (n, q)."""
     length = np.linalg.norm(columns, axis=0)
     length[length == 0.0] = 1.0
     return np.asarray(np.linalg.lstsq(columns / length, target, rcond=None)[0] / length)

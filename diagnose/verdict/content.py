@@ -1,13 +1,13 @@
-"""verdict.json: what a diagnosis found, for other programs. Units stand beside the values."""
+"""Content of verdict.json, what a diagnosis found for other programs. Units stand beside the values."""
 
 from collections.abc import Sequence
 from typing import Any
 
 from diagnose.findings import Findings, Fit, FittedModel, Grade, Interval, Remainder
-from diagnose.next_press.choose import NextPress, surviving
+from diagnose.next_press.choose import NextPress, surviving_models
 from diagnose.verdict.names import model_words
-from diagnose.verdict.resimulation import Resimulated
-from diagnose.verdict.where_it_fails import significant
+from diagnose.verdict.resimulation import Resimulation
+from diagnose.verdict.where_it_fails import significant_places
 
 FORMAT = "softdot-verdict/1"
 
@@ -16,10 +16,10 @@ def verdict(
     findings: Findings,
     summary: Sequence[str],
     following: Sequence[NextPress],
-    resimulated: Sequence[Resimulated],
+    resimulated: Sequence[Resimulation],
     warnings: Sequence[str],
 ) -> dict[str, Any]:
-    """The whole content. summary : sentences for people; following : the next presses, best first.
+    """Whole content of verdict.json. summary : sentences for people; following : the next presses, best first.
 
     What is only the main part has a key of its own: missing_physics is empty unless it explains everything.
     """
@@ -30,24 +30,26 @@ def verdict(
         "summary": list(summary),
         "grade": str(findings.grade),
         "mismatch": findings.mismatch,
-        "detection": _detection(findings),
-        "where": _where(findings),
+        "detection": _detection_table(findings),
+        "where": _places_table(findings),
         "component_shares": dict(findings.shares),
-        "missing_physics": _missing(told) if told is not None and whole else [],
-        "main_part": _missing(told) if told is not None and not whole else [],
-        "remainder": _remainder(findings.remainder),
+        "missing_physics": _mechanisms_table(told) if told is not None and whole else [],
+        "main_part": _mechanisms_table(told) if told is not None and not whole else [],
+        "remainder": _remainder_table(findings.remainder),
         "kind": findings.kind or None,
-        "alternatives": [_alternative(model) for model in findings.models if model is not told],
-        "ambiguous_with": ambiguous(findings),
+        "alternatives": [_alternative_table(model) for model in findings.models if model is not told],
+        "ambiguous_with": ambiguous_groups(findings),
         "unexplained": findings.unexplained,
         "reasons": list(findings.reasons),
         "fit": {
-            "train": _fit(findings.train),
-            "held_out": _fit(findings.held_out),
-            "held_out_best_unnamed": _fit(findings.unnamed),
+            "train": _fit_table(findings.train),
+            "held_out": _fit_table(findings.held_out),
+            "held_out_best_unnamed": _fit_table(findings.unnamed),
             "engine": findings.engine,
-            "engine_error_percent": {_kind(name): 100.0 * share for name, share in findings.engine_accuracy.items()},
-            "resimulated": [_resimulated(each) for each in resimulated],
+            "engine_error_percent": {
+                _quantity_name(name): 100.0 * share for name, share in findings.engine_accuracy.items()
+            },
+            "resimulated": [_resimulation_table(each) for each in resimulated],
         },
         "black_box_gain_over_best_per_press": findings.black_box_gain,
         "nuisances": {name: {"value": v, "one_sigma": s} for name, (v, s) in findings.nuisances.items()},
@@ -60,19 +62,19 @@ def verdict(
     }
 
 
-def _remainder(left: Remainder | None) -> dict[str, Any] | None:
-    """What a main part leaves."""
+def _remainder_table(left: Remainder | None) -> dict[str, Any] | None:
+    """Share that a main part explains, and where the rest lies; None without a main part."""
     if left is None:
         return None
     return {"share_explained_held_out": left.share, "share_left_by_phase": dict(left.by_phase)}
 
 
-def _kind(channel: str) -> str:
-    """force_N -> force."""
+def _quantity_name(channel: str) -> str:
+    """Quantity of a channel without its unit: force_N -> force."""
     return channel.rpartition("_")[0]
 
 
-def _detection(findings: Findings) -> dict[str, Any]:
+def _detection_table(findings: Findings) -> dict[str, Any]:
     noise: dict[str, dict[str, Any]] = {}
     for (label, channel), summary in findings.detection.noise.items():
         noise.setdefault(label, {})[channel] = dict(summary)
@@ -85,8 +87,8 @@ def _detection(findings: Findings) -> dict[str, Any]:
     }
 
 
-def _where(findings: Findings) -> list[dict[str, Any]]:
-    """Nothing where there is no mismatch."""
+def _places_table(findings: Findings) -> list[dict[str, Any]]:
+    """Places with a significant excess; none where there is no mismatch."""
     return [
         {
             "run": place.run,
@@ -99,16 +101,17 @@ def _where(findings: Findings) -> list[dict[str, Any]]:
             "score": place.score,
             "p_value_family_wise": place.p_value,
         }
-        for place in (significant(findings) if findings.mismatch else [])
+        for place in (significant_places(findings) if findings.mismatch else [])
     ]
 
 
-def _missing(model: FittedModel) -> list[dict[str, Any]]:
+def _mechanisms_table(model: FittedModel) -> list[dict[str, Any]]:
+    """Mechanisms of a model with parameters and intervals, and as a configuration has them."""
     return [
         {
             "mechanism": setting.candidate.mechanism,
             "component": setting.candidate.component,
-            "parameters": {name: _interval(interval) for name, interval in intervals.items()},
+            "parameters": {name: _interval_table(interval) for name, interval in intervals.items()},
             "configuration": setting.candidate.parameters(setting.values),
             "probability": model.probability,
         }
@@ -116,21 +119,21 @@ def _missing(model: FittedModel) -> list[dict[str, Any]]:
     ]
 
 
-def _interval(interval: Interval) -> dict[str, Any]:
+def _interval_table(interval: Interval) -> dict[str, Any]:
     return {
         "value": interval.value,
         "low": interval.low,
         "high": interval.high,
         "unit": interval.unit,
-        "bounded": interval.bounded,
+        "bounded": interval.limited_by_search,
         "low_is_limit_of_search": interval.low_searched,
         "high_is_limit_of_search": interval.high_searched,
         "fixed": interval.fixed,
     }
 
 
-def _alternative(model: FittedModel) -> dict[str, Any]:
-    names = _names(model)
+def _alternative_table(model: FittedModel) -> dict[str, Any]:
+    names = _mechanism_names(model)
     return {
         "mechanism": " + ".join(each["mechanism"] for each in names),
         "component": " + ".join(each["component"] for each in names),
@@ -142,23 +145,23 @@ def _alternative(model: FittedModel) -> dict[str, Any]:
     }
 
 
-def _names(model: FittedModel) -> list[dict[str, str]]:
+def _mechanism_names(model: FittedModel) -> list[dict[str, str]]:
     pairs = (setting.candidate.name for setting in model.settings)
     return [{"mechanism": mechanism, "component": component} for mechanism, component in pairs]
 
 
-def ambiguous(findings: Findings) -> list[list[dict[str, Any]]]:
+def ambiguous_groups(findings: Findings) -> list[list[dict[str, Any]]]:
     """Groups of two or more models that the recordings cannot tell apart; a pair of mechanisms is one member."""
     groups = [[findings.models[number] for number in group] for group in findings.groups if len(group) > 1]
-    return [[_member(model) for model in group] for group in groups]
+    return [[_model_names(model) for model in group] for group in groups]
 
 
-def _member(model: FittedModel) -> dict[str, str]:
-    names = _names(model)
+def _model_names(model: FittedModel) -> dict[str, str]:
+    names = _mechanism_names(model)
     return {key: " + ".join(each[key] for each in names) for key in ("mechanism", "component")}
 
 
-def _fit(fit: Fit | None) -> dict[str, Any] | None:
+def _fit_table(fit: Fit | None) -> dict[str, Any] | None:
     if fit is None:
         return None
     return {
@@ -170,7 +173,7 @@ def _fit(fit: Fit | None) -> dict[str, Any] | None:
     }
 
 
-def _resimulated(one: Resimulated) -> dict[str, Any]:
+def _resimulation_table(one: Resimulation) -> dict[str, Any]:
     return {
         "run": one.run,
         "role": one.role,
@@ -184,36 +187,36 @@ def _resimulated(one: Resimulated) -> dict[str, Any]:
 
 
 def next_experiment(findings: Findings, following: Sequence[NextPress]) -> dict[str, Any]:
-    """The next press, and under "then" those to make after it; without one, a sentence and null."""
+    """Next press, and under "then" those to make after it; without one, a sentence and null."""
     if not following:
         nothing: dict[str, Any] = {"changes": {}, "separates": [], "leaves_together": [], "then": []}
-        return {"text": without_press(findings), **nothing, "expected_separation_sigma": None}
-    first, *others = [_press(press, waveform(number)) for number, press in enumerate(following)]
+        return {"text": reason_without_press(findings), **nothing, "expected_separation_sigma": None}
+    first, *others = [_press_table(press, waveform_file(number)) for number, press in enumerate(following)]
     return {**first, "then": others}
 
 
-def waveform(number: int) -> str:
-    """File of the motion of a proposed press, numbered from 0."""
+def waveform_file(number: int) -> str:
+    """Name of the file with the motion of a proposed press, numbered from 0."""
     return f"next-press-{number + 1}.csv" if number else "next-press.csv"
 
 
-def _press(press: NextPress, file: str) -> dict[str, Any]:
+def _press_table(press: NextPress, file: str) -> dict[str, Any]:
     return {
         "text": press.text,
         "as_in": press.run.label,
         "changes": dict(press.changes),
-        "separates": [_member(model) for model in press.rivals],
-        "leaves_together": [[_member(press.rivals[number]) for number in group] for group in press.alike],
+        "separates": [_model_names(model) for model in press.rivals],
+        "leaves_together": [[_model_names(press.rivals[number]) for number in group] for group in press.alike],
         "expected_separation_sigma": press.separation,
         "waveform": file,
     }
 
 
-def without_press(findings: Findings) -> str:
-    """Why there is no next press, and what to do instead."""
+def reason_without_press(findings: Findings) -> str:
+    """Sentence on why there is no next press, and what to do instead."""
     if not findings.mismatch:
         return "No press is needed: simulation and recordings agree."
-    if len(surviving(findings)) > 1:
+    if len(surviving_models(findings)) > 1:
         return (
             "None of the presses that were tried tells them apart: they act alike in this rig. Measure one part by "
             "itself, such as the amplifier without the sensor, or a coupon of the material."

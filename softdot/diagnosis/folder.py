@@ -17,8 +17,8 @@ from diagnose.other_units import other_units
 from diagnose.signals.reading import thin_recording
 from diagnose.signals.recording import Recording
 from diagnose.signals.run_checks import refuse_slow_sampling
-from diagnose.verdict.content import FORMAT, verdict, waveform
-from diagnose.verdict.resimulation import OutOfTimeError, Resimulated, resimulate
+from diagnose.verdict.content import FORMAT, verdict, waveform_file
+from diagnose.verdict.resimulation import OutOfTimeError, Resimulation, resimulate
 from diagnose.verdict.words import sentences
 from foundation.cache import check_cache_folder
 from foundation.errors import InputError
@@ -35,7 +35,7 @@ from solve.solution.errors import NoEquilibriumError
 DIAGNOSIS = Product(
     FORMAT,
     "verdict.json",
-    frozenset({"verdict.json", "report.html", "plots", "improved.toml", *map(waveform, range(MOST_PRESSES))}),
+    frozenset({"verdict.json", "report.html", "plots", "improved.toml", *map(waveform_file, range(MOST_PRESSES))}),
 )
 UNCHECKED = "The result was not checked with the full 3D model, because --fast-model-only was given."
 FULL_MODEL_S = 240.0  # for presses by the full model, of the ten minutes that a first diagnosis may take
@@ -59,7 +59,7 @@ class Options:
 class Proof:
     """Runs pressed again by the full model. failure : why one has no equilibrium. warnings : why one is missing."""
 
-    runs: list[Resimulated] = field(default_factory=list)
+    runs: list[Resimulation] = field(default_factory=list)
     failure: str | None = None
     warnings: list[str] = field(default_factory=list)
 
@@ -170,7 +170,7 @@ def _write_files(rig: Rig, engine: Engine, findings: Findings, following: Sequen
     for number, press in enumerate(following):
         columns = np.column_stack([press.run.time_s, press.run.drive_values])
         header = f"time_s,{press.run.drive}"
-        np.savetxt(folder / waveform(number), columns, "%.9g", ",", header=header, comments="")
+        np.savetxt(folder / waveform_file(number), columns, "%.9g", ",", header=header, comments="")
 
 
 def _reporting(progress: Progress) -> Report:

@@ -22,8 +22,8 @@ from diagnose.verdict.names import (
     setting_words,
     unit_words,
 )
-from diagnose.verdict.resimulation import Resimulated
-from diagnose.verdict.words import Sentence, detected, separation_words
+from diagnose.verdict.resimulation import Resimulation
+from diagnose.verdict.words import Sentence, detection_p_value, separation_words
 from export.page import page_environment
 from foundation.files import write_whole_text
 from softdot.version import installed_version
@@ -48,7 +48,7 @@ def write_evidence(
     findings: Findings,
     told: Sequence[Sentence],
     summary: dict[str, Any],
-    resimulated: Sequence[Resimulated],
+    resimulated: Sequence[Resimulation],
     folder: Path,
 ) -> None:
     """folder/plots/*.png and folder/report.html. summary : content of verdict.json in plain data."""
@@ -71,7 +71,7 @@ def page_text(
         verdict_class=HEADS[findings.grade][0],
         title=_title(findings),
         told=told,
-        detected=detected(findings),
+        detected=detection_p_value(findings),
         parameters=list(_parameter_rows(findings.best)) if findings.best else [],
         explanations=_explanation_rows(findings),
         pictures=[(picture, base64.b64encode(picture.path.read_bytes()).decode("ascii")) for picture in pictures],
@@ -116,7 +116,7 @@ def _title(findings: Findings) -> str:
 
 
 def _pictures(
-    recording: Recording, findings: Findings, resimulated: Sequence[Resimulated], folder: Path
+    recording: Recording, findings: Findings, resimulated: Sequence[Resimulation], folder: Path
 ) -> Iterator[Picture]:
     overview = draw_overview(recording, findings, folder / "where.png")
     if overview is not None:
@@ -142,7 +142,9 @@ def _pictures(
         yield Picture("gains", gains, "Which explanation predicts best", text)
 
 
-def runs_to_draw(recording: Recording, findings: Findings, resimulated: Sequence[Resimulated]) -> list[tuple[str, Any]]:
+def runs_to_draw(
+    recording: Recording, findings: Findings, resimulated: Sequence[Resimulation]
+) -> list[tuple[str, Any]]:
     """Labels and signals of the full model: runs that were pressed again, then those with the largest excess."""
     pressed = {one.run: one.signals for one in resimulated}
     excess = {run.label: 0.0 for run in recording.runs}

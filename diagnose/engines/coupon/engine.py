@@ -1,4 +1,4 @@
-"""The forward model of a coupon test."""
+"""The forward model of a coupon test: one material point that deforms as the whole coupon does."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -99,6 +99,7 @@ class CouponEngine(SolvedOutright):
         return with_factors_last(layer_model(self.material, self.specimen.thickness_mm), mechanisms)
 
     def _answers(self, run: Run, mechanisms: Sequence[Mechanism], of_drive: Mapping[str, float]) -> Signals:
+        """Answers of a run with these mechanisms; of_drive : errors of the drive by name. NoEquilibriumError."""
         kind = run.drive
         shift = sum(of_drive.get(name, 0.0) for name, of in DRIVE_ERRORS.items() if of == kind and name != "force_gain")
         gain = of_drive.get("force_gain", 0.0) if kind == "force_N" else 0.0

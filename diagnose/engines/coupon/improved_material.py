@@ -1,4 +1,4 @@
-"""What a coupon test teaches about a material, as a configuration has it."""
+"""The material after a coupon test, as a configuration has it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

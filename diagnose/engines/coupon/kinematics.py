@@ -18,7 +18,7 @@ from foundation.arrays import Floats
 
 @dataclass(frozen=True)
 class TesterReading:
-    """What a tester reads, with derivatives: force (t,) in N, travel (t,) in mm, and lateral stress (t, k) in MPa.
+    """Reading of a tester, with derivatives: force (t,) in N, travel (t,) in mm and lateral stress (t, k) in MPa.
 
     ..._stress (t, ..., 6) : by the stress S; ..._unknown (t, ..., m) : by the unknowns at fixed S.
     """

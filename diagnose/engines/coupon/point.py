@@ -46,7 +46,7 @@ def youngs_modulus_MPa(law: MediumLaw) -> float:
 STRETCH_TOLERANCE = 1e-6  # of the logarithm of the stretch, or of the shear; the iterate behind it errs by the square
 MAX_NEWTON_ITERATIONS = 80  # four or five, unless samples lie at the kink of softening
 MAX_SOFTENING_ROUNDS = 30  # two or three
-PULL_STEPS = 10  # steps of a pull to the largest drive of an earlier run
+PULL_STEPS = 10  # to the largest drive of an earlier run
 LARGEST_NEWTON_STEP = 0.3  # of the logarithm of the stretch, or of the shear, in one iteration
 
 

@@ -80,7 +80,10 @@ def _relaxed_stress(elastic, moduli, fade, gain):  # type: ignore[no-untyped-def
 
 @nb.njit(cache=True)
 def _newton_step(residual, by_stress, stress_by, by_unknown, moduli, fade, gain):  # type: ignore[no-untyped-def]
-    """Forward substitution in time: the correction of a sample depends on those before through the branches."""
+    """Newton's correction (t, m) by forward substitution in time.
+
+    The correction of a sample depends on those before through the branches.
+    """
     samples, size = residual.shape
     parts = stress_by.shape[1]
     branches, old, new = np.zeros((len(moduli), parts)), np.zeros(parts), np.zeros(parts)

@@ -15,9 +15,9 @@ from diagnose.signals.recording import Recording, Run
 from diagnose.statistics.chi_bar_square import MOST_NON_NEGATIVE
 
 LARGEST_MODULUS_RATIO = 20.0  # of E_i / E_inf: a tape or a gel may relax by 95 % within a decade
-SPACING_DECADES = 0.5  # decades between branches
+SPACING_DECADES = 0.5  # between branches
 STAIRCASE_TIME_RATIO = 3.0  # times as long as at the quickest rate: a loading with rests in it
-SMOOTHING_SAMPLES = 5  # samples, against the noise of the drive
+SMOOTHING_SAMPLES = 5  # against the noise of the drive
 
 
 def relaxation_times(recording: Recording, others: int = 0) -> tuple[float, ...]:

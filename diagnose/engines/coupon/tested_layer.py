@@ -1,4 +1,4 @@
-"""A segment whose medium 1 is the part that was tested: what switches mechanisms on in a press does so here.
+"""A model of a segment whose medium 1 is the tested part, so that mechanisms are switched on as in a press.
 
 Only medium 1, the read-out and the physics of such a model are looked at; film, medium 2 and dot stand idle, and so do
 they for a sensor of unknown geometry.

@@ -1,4 +1,4 @@
-"""The drive of a recording: how deep its runs go, and by how much its zero may be off."""
+"""Depth of the deepest run of a recording, and the error of the zero of its drive."""
 
 from dataclasses import replace
 

@@ -9,7 +9,7 @@ from diagnose.engines.segment.prepared import Prepared
 from diagnose.forward import Candidate, Setting
 
 COMPARED_DEPTH_SHARE = 0.5
-"""Of the deepest press, where the second cycle is set against the first: near the deepest both are the same."""
+"""Share of the largest depth at which the second cycle is compared with the first: near it both are the same."""
 Derived = Callable[[Sequence[float]], dict[str, float]]
 
 

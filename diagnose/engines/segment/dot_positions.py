@@ -1,4 +1,4 @@
-"""Where the dot stands in the runs, and what was pressed there.
+"""Positions of the dot in the runs of a recording, and the presses that are prepared for each.
 
 A film with one electrode is pressed where rig.toml puts the dot; another place is a change of that press, as of any
 candidate. Of several electrodes one collects next to nothing until the dot stands over it, and no factor makes the one
@@ -39,7 +39,7 @@ class DotPositions:
         each = [prepared.accuracy for prepared in self._at.values()]
         self.accuracy = {name: max(one[name] for one in each) for name in each[0]}
 
-    def prepared_at(self, place: Place) -> tuple[Prepared, Place]:
+    def presses_at(self, place: Place) -> tuple[Prepared, Place]:
         """Prepared presses for a dot at a place, and its offset from where they press.
 
         ValueError where nothing was pressed.

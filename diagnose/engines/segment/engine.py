@@ -1,4 +1,4 @@
-"""The forward model of a rig with a known segment."""
+"""The forward model of a rig with a known segment, by tables of presses of its 3D model."""
 
 from collections.abc import Sequence
 from copy import copy
@@ -71,22 +71,22 @@ class SegmentEngine:
         self.declared = permanent_settings(model)
         self.model, self.recording = without_untabulated(model), recording
         self.drives = [model_drive(*pair) for pair in zip(recording.runs, recording.phases, strict=True)]
-        self.stands = DotPositions(self.model, mesh_settings, recording, report, executor)
-        self.stands.add([setting.candidate for setting in self.declared], report)
-        self.stands.refine(self.declared, report)
-        self.accuracy = self.stands.accuracy
+        self.dot_positions = DotPositions(self.model, mesh_settings, recording, report, executor)
+        self.dot_positions.add([setting.candidate for setting in self.declared], report)
+        self.dot_positions.refine(self.declared, report)
+        self.accuracy = self.dot_positions.accuracy
         self._tables: Recent[TableQuestion, ResponseTable] = Recent(KEPT_TABLES)
         self._histories: Recent[tuple[Place, list[Setting]], list[PathHistory]] = Recent(KEPT_TABLES)
         self._courses = Courses(KEPT_TABLES * len(recording.runs))
         stated = {(one.name, one.component) for one in untabulated_mechanisms(model)}
         self.candidates: tuple[Candidate, ...] = tuple(
-            with_derived(c, self.prepared) for c in candidates_of_segment(self.scene) if c.name not in stated
+            with_derived(c, self.first_presses) for c in candidates_of_segment(self.scene) if c.name not in stated
         )
 
     @property
-    def prepared(self) -> Prepared:
+    def first_presses(self) -> Prepared:
         """Prepared presses for the position of the dot in the first run."""
-        return self.stands.prepared_at(self.recording.runs[0].dot_offset_mm)[0]
+        return self.dot_positions.presses_at(self.recording.runs[0].dot_offset_mm)[0]
 
     @cached_property
     def scene(self) -> Scene:
@@ -96,8 +96,8 @@ class SegmentEngine:
         return Scene(
             model=self.model,
             readouts=tuple(self._readout(run) or Readout() for run in runs),
-            depth_mm=self.prepared.pressed_mm,
-            force_N=float(self.prepared.fit.table[-1, 0, 0]),
+            depth_mm=self.first_presses.pressed_mm,
+            force_N=float(self.first_presses.fit.table[-1, 0, 0]),
             voltage_V=max((float(np.abs(v).max()) for v in values if len(v)), default=0.0),
             step_s=min(run.step_s for run in runs),
             duration_s=max(float(run.time_s[-1] - run.time_s[0]) for run in runs),
@@ -107,7 +107,7 @@ class SegmentEngine:
     @property
     def shortfalls(self) -> tuple[str, ...]:
         """Sentences on candidates that the 3D model could not press as it should."""
-        return self.stands.shortfalls
+        return self.dot_positions.shortfalls
 
     def nuisance(self, name: str) -> Candidate | None:
         """Candidate of a nuisance, see diagnose.forward.Engine; also "offset_mm", the error of the first touch."""
@@ -121,13 +121,13 @@ class SegmentEngine:
 
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
         """Press what these candidates need. NoEquilibriumError."""
-        self.stands.add(candidates, report)
+        self.dot_positions.add(candidates, report)
         self._forget()
 
     def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:
         """Press each of these settings. NoEquilibriumError where the baseline has none."""
         self._forget()
-        return self.stands.refine(settings, report)
+        return self.dot_positions.refine(settings, report)
 
     def _forget(self) -> None:
         self._tables.clear()
@@ -169,7 +169,7 @@ class SegmentEngine:
     def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
         """Every answer of a run by the 3D model along its own drive. ValueError, NoEquilibriumError."""
         asked, drive = self.recording.runs[run], self.drives[run]
-        base, beside = self.stands.prepared_at(asked.dot_offset_mm)
+        base, beside = self.dot_positions.presses_at(asked.dot_offset_mm)
         believed = replace(with_dot_moved(base.model, beside), readout=self._readout(asked))
         stated = [setting.candidate.as_mechanism(setting.values) for setting in self.declared]
         on = with_mechanisms(believed, [*stated, *mechanisms])
@@ -196,7 +196,7 @@ class SegmentEngine:
 
     def _mechanics(self, run: Run, drive: Drive, values: Floats, on: Model, settings: Sequence[Setting]) -> Mechanics:
         """Mechanics of a run. What depends on the path acts back on a compliant drive: a fixed point."""
-        (base, _), fit = self.stands.prepared_at(run.dot_offset_mm), self._response_table(run, on, settings)
+        (base, _), fit = self.dot_positions.presses_at(run.dot_offset_mm), self._response_table(run, on, settings)
         found = self._courses.mechanics(fit, base.depth_mm, base.relaxing, drive, values, on)
         asked = run.dot_offset_mm, base.path_dependent_settings(settings)
         if not asked[1]:
@@ -216,7 +216,7 @@ class SegmentEngine:
 
     def _depth_before_mm(self, run: Run, fit: ResponseTable, on: Model, settings: Sequence[Setting]) -> float:
         """Deepest path of the dot in mm in the runs before; what depends on the path does not act back on it here."""
-        base, _ = self.stands.prepared_at(run.dot_offset_mm)
+        base, _ = self.dot_positions.presses_at(run.dot_offset_mm)
         slowly = tuple(term for term in on.physics.terms if not term.follows_time)
         at_once = replace(on, physics=replace(on.physics, inelastic={}, terms=slowly))
         deepest = 0.0
@@ -232,7 +232,7 @@ class SegmentEngine:
 
         It is kept: runs share it, and what stands behind the film leaves it alone.
         """
-        base, beside = self.stands.prepared_at(run.dot_offset_mm)
+        base, beside = self.dot_positions.presses_at(run.dot_offset_mm)
         factor = _d31(on) / _d31(self.model)
 
         def changed_table() -> ResponseTable:
@@ -245,7 +245,7 @@ class SegmentEngine:
 
     def _film_plate(self, on: Model) -> FilmPlate:
         """Film of a model as a plate; a thinner film has more capacitance."""
-        return self.prepared.film.with_capacitance_factor(
+        return self.first_presses.film.with_capacitance_factor(
             self.model.segment.film.thickness_um / on.segment.film.thickness_um
         )
 

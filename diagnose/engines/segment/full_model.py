@@ -56,7 +56,7 @@ class Task:
 
 
 def solve(task: Task, report: Report) -> Signals:
-    """Every answer of the run. NoEquilibriumError."""
+    """Every answer of the task's run by the 3D model. NoEquilibriumError."""
     found = _solve_through_time(task, report) if task.model.follows_time else _solve_by_depth(task, report)
     # path, force and charge are those of the press itself: only the amplifier is still to come
     return channel_signals(task.run, task.run.answers, task.drive, task.values, found, task.film, task.model)

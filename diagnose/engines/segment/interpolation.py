@@ -135,7 +135,7 @@ _LAYOUTS: dict[str, Callable[[tuple[Coordinate, ...], tuple[int, ...], list[BSpl
 FADE_RANGE_SHARE = 0.3
 """Share of the range of a coordinate over which a difference fades."""
 SAME_PRESS_RANGE_SHARE = 0.02
-"""Share of the range: a press nearer to another one tells next to nothing new."""
+"""Share of the range of a coordinate within which a second press adds next to nothing."""
 
 
 class Differences:

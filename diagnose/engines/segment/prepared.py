@@ -1,4 +1,4 @@
-"""All that was pressed for one rig: the baseline's table, what layers remember, and changes by candidates."""
+"""Presses of one rig and what was learnt: the baseline's table, what layers remember, changes by candidates."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -38,10 +38,10 @@ from solve.tables.table_accuracy import accuracy
 from solve.tables.table_changes import TRUSTED, Depths, change, replaced
 from solve.tables.workers import run_all
 
-TABLE_DEPTH_RATIO = 1.02  # of the depth of the table over the deepest press
-FINEST_ELEMENT_RATIO = 0.4  # element sizes of the finest mesh, in terms of the diagnosis mesh
+TABLE_DEPTH_RATIO = 1.02  # depth of the table over that of the deepest run
+FINEST_ELEMENT_RATIO = 0.4  # element sizes of the finest mesh over those of the diagnosis mesh
 RELEVANT_CHANGE = 1e-3  # of force and charge: what a press may differ by from those around it
-NEGLIGIBLE_WEIGHT = 1e-12  # of a weight
+NEGLIGIBLE_WEIGHT = 1e-12  # of a press: round-off
 TOUCH_DEPTH_SHARE = 1e-6  # of the depth: there is no logarithm of 0
 
 
@@ -138,7 +138,7 @@ class Prepared:
         return [setting for setting in settings if _pressed_part(setting) in differing]
 
     def _may_differ(self, setting: Setting) -> bool:
-        """Whether a press at these values would tell something new."""
+        """Whether a press at these values may differ from what those before say of it."""
         candidate = setting.candidate
         if not any(setting.values):
             return False

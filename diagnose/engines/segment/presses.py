@@ -24,10 +24,10 @@ from solve.tables.workers import run_all
 DEPTH_SHARES = 0.1, 0.25, 0.45, 0.7, 1.0
 """Shares of the depth at which changes are read: they are smooth over it."""
 MIDDLE_ELEMENT_RATIO = 0.7
-"""Element sizes of the finer mesh, in terms of the diagnosis mesh."""
-MOST_NODES = 20_000  # 2 s of one core for each Newton step
-CHEAP_NODES = 10_000  # of the finer mesh of a slice, with what stands for it in y
-FRICTION_SUBSTEPS = 3  # steps between two of them under friction
+"""Element sizes of the middle mesh over those of the diagnosis mesh."""
+MOST_NODES = 20_000  # of a mesh: 2 s of one core for each Newton step
+CHEAP_NODES = 10_000  # of the middle mesh of a slice, with its copies along y
+FRICTION_SUBSTEPS = 3  # between two of the depths, where there is friction
 Name = tuple[object, ...]
 Place = tuple[float, float]
 Sizes = tuple[Mesh, MeshSettings]

@@ -1,4 +1,4 @@
-"""From a table and a drive to what the instruments of a run show."""
+"""The signals of a run's instruments, from a response table and a drive."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

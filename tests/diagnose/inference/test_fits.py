@@ -141,7 +141,7 @@ def test_an_interval_that_a_bound_ends_says_so():
         model, fit_mechanisms(model, baseline, (BRANCHES,), np.full(3, 0.05), excess(baseline))
     )
     assert found["relative_moduli[1]"].low == 0.0
-    assert found["relative_moduli[1]"].bounded
+    assert found["relative_moduli[1]"].limited_by_search
     assert found["relative_moduli[0]"].low > 0.05
 
 

@@ -7,10 +7,10 @@ import pytest
 from scipy.linalg import block_diag
 
 from diagnose.forward import Candidate, Coordinate, Setting
-from diagnose.next_press.choose import SETTLED, next_presses, surviving
+from diagnose.next_press.choose import SETTLED_SEPARATION_SIGMAS, next_presses, surviving_models
 from diagnose.next_press.parting import PressJudge
 from diagnose.next_press.press_shape import Shape, recorded_shape
-from diagnose.next_press.proposals import base_setup, repeats
+from diagnose.next_press.proposals import base_setup, repeat_proposals
 from diagnose.next_press.variations import variations
 from diagnose.signals.phases import find_phases
 from diagnose.signals.recording import Recording
@@ -45,9 +45,9 @@ def test_the_choice_is_the_best_of_all_presses_that_the_model_can_tell(recording
     shallower = [
         v for v in variations(base_setup(recording)) if v.shape.deep <= 0.31 and "dot_offset_mm" not in v.changes
     ]
-    rivals = separations(recording, [*repeats(recording), *(each.proposal() for each in shallower)])
+    rivals = separations(recording, [*repeat_proposals(recording), *(each.proposal() for each in shallower)])
     assert best.separation == pytest.approx(max(rivals))
-    assert best.separation > separations(recording, repeats(recording))[0]
+    assert best.separation > separations(recording, repeat_proposals(recording))[0]
     assert "dot_offset_mm" not in best.changes  # which the toy was not prepared for
     assert best.run.drive_values.max() < 0.31
 
@@ -55,7 +55,7 @@ def test_the_choice_is_the_best_of_all_presses_that_the_model_can_tell(recording
 def test_two_equal_rivals_are_not_parted(recording):
     twin = fitted(LEAK, 0.5)
     judge = PressJudge(recording, ToyEngine(recording), (LEAKS, twin))
-    assert judge.separations(repeats(recording)[0]) == pytest.approx([0.0], abs=1e-6)
+    assert judge.separations(repeat_proposals(recording)[0]) == pytest.approx([0.0], abs=1e-6)
     assert planned(recording, (LEAKS, twin)) is None
 
 
@@ -64,7 +64,7 @@ def test_a_press_that_settles_all_but_twins_says_which_stay_together(recording):
     assert only.alike == ((0, 2),)
     assert only.separations[1] == pytest.approx(0.0, abs=1e-6)
     assert only.separation == pytest.approx(min(only.separations[[0, 2]]))
-    assert only.separation > SETTLED
+    assert only.separation > SETTLED_SEPARATION_SIGMAS
 
 
 @pytest.mark.press
@@ -75,7 +75,7 @@ def test_presses_are_made_until_their_separations_together_settle_it(recording):
     found = series(recording, (LEAKS, RELAXES), rough)
     assert len(found) > 1
     together = [np.sqrt(sum(float(one.separations[0]) ** 2 for one in found[: n + 1])) for n in range(len(found))]
-    assert [bool(one.alike) for one in found] == [sigma < SETTLED for sigma in together]
+    assert [bool(one.alike) for one in found] == [sigma < SETTLED_SEPARATION_SIGMAS for sigma in together]
 
 
 def test_a_load_cell_shows_what_a_voltage_does_not(recording):
@@ -85,13 +85,13 @@ def test_a_load_cell_shows_what_a_voltage_does_not(recording):
     (weighed,) = [each.proposal() for each in variations(setup) if "records" in each.changes]
     assert weighed.run.answers == ("voltage_V", "force_N")
     without, with_it = separations(recording, [setup.proposal(), weighed], rough)
-    assert with_it > SETTLED > without
+    assert with_it > SETTLED_SEPARATION_SIGMAS > without
     forces = toy_recording(runs=(toy_run(channels=("voltage_V", "force_N")),))
     assert not any("records" in each.changes for each in variations(base_setup(forces)))
 
 
 def test_an_error_of_the_model_hides_a_difference(recording):
-    press = repeats(recording)[:1]
+    press = repeat_proposals(recording)[:1]
     rough = ToyEngine(recording)
     rough.accuracy = {"voltage_V": 0.5}
     assert separations(recording, press, rough)[0] < 0.5 * separations(recording, press)[0]
@@ -99,8 +99,8 @@ def test_an_error_of_the_model_hides_a_difference(recording):
 
 def test_the_separation_is_the_one_of_the_statistics(recording):
     judge = PressJudge(recording, ToyEngine(recording), (LEAKS, RELAXES))
-    press = repeats(recording)[0]
-    one, other = judge.answers(press)
+    press = repeat_proposals(recording)[0]
+    one, other = judge.rival_answers(press)
     weight = 1.0 / np.sqrt(np.maximum(one.system.variance, other.system.variance))[:, None]
     columns = weight * np.column_stack(
         [one.slopes, -other.slopes, one.system.nuisance_design, other.system.nuisance_design]
@@ -113,7 +113,7 @@ def test_the_separation_is_the_one_of_the_statistics(recording):
 
 def test_a_declared_gain_takes_its_part_of_the_difference(recording):
     loose = Recording(tuple(replace(run, nuisance={"gain": 0.5}) for run in recording.runs))
-    press = repeats(recording)[0], repeats(loose)[0]
+    press = repeat_proposals(recording)[0], repeat_proposals(loose)[0]
     tight, floating = separations(recording, press[:1]), separations(loose, press[1:])
     assert floating[0] <= tight[0]
 
@@ -124,11 +124,11 @@ def test_each_rival_is_predicted_beside_its_own_value_of_what_all_runs_share(rec
     engine.recording = Recording(tuple(replace(run, nuisance=sigma) for run in recording.runs))
     softer, stiffer = (replace(LEAKS, shared={"modulus.medium1": value}) for value in (-0.2, 0.2))
     same, apart = (
-        PressJudge(engine.recording, engine, (softer, rival)).separations(repeats(engine.recording)[0])[0]
+        PressJudge(engine.recording, engine, (softer, rival)).separations(repeat_proposals(engine.recording)[0])[0]
         for rival in (softer, stiffer)
     )
     assert same == pytest.approx(0.0, abs=1e-6)
-    assert apart > SETTLED
+    assert apart > SETTLED_SEPARATION_SIGMAS
 
 
 class Stiffer(ToyEngine):
@@ -182,14 +182,17 @@ def _without_imagine(engine):
 
 def test_without_a_rival_there_is_nothing_to_part(recording):
     assert planned(recording, (LEAKS,)) is None
-    assert surviving(found(recording, (LEAKS, RELAXES), mismatch=False)) == ()
+    assert surviving_models(found(recording, (LEAKS, RELAXES), mismatch=False)) == ()
 
 
 def test_rivals_are_those_that_are_left():
     recording = toy_recording()
     unlikely = fitted(RELAXING, 0.3, probability=1e-4)
-    assert surviving(found(recording, (LEAKS, unlikely), LEAKS, ((0,),))) == (LEAKS,)
-    assert surviving(found(recording, (LEAKS, RELAXES), None, ((0,), (1,)), unexplained=True)) == (LEAKS, RELAXES)
+    assert surviving_models(found(recording, (LEAKS, unlikely), LEAKS, ((0,),))) == (LEAKS,)
+    assert surviving_models(found(recording, (LEAKS, RELAXES), None, ((0,), (1,)), unexplained=True)) == (
+        LEAKS,
+        RELAXES,
+    )
 
 
 def test_a_recorded_press_is_read_as_it_was_set():
@@ -200,7 +203,7 @@ def test_a_recorded_press_is_read_as_it_was_set():
 
 
 def test_the_drive_of_a_shape_is_that_shape():
-    time, drive = Shape(level=-0.1, deep=0.2, rise_s=0.2, hold_s=0.4, fall_s=0.1, cycles=2).sampled(0.001)
+    time, drive = Shape(level=-0.1, deep=0.2, rise_s=0.2, hold_s=0.4, fall_s=0.1, cycles=2).sample(0.001)
     presses = find_phases(time, drive).presses
     assert len(presses) == 2
     assert drive.max() == pytest.approx(0.2)

@@ -68,11 +68,11 @@ def test_what_every_rig_has_a_little_of_is_no_finding():
     """A surface that gives way by 2 um, and 0.3 % of the force as friction, of which 1 % would be one."""
     of = {c.name: c for c in candidates(scene())}
     gap, guide = of.pop(("contact-gap", "dot")), of.pop(("guide-friction", "rig"))
-    assert gap.ordinary((0.0015,))
-    assert not gap.ordinary((0.003,))
-    assert guide.ordinary((0.001, 0.0, 0.0, 0.0015, 0.0, 0.0))
-    assert not guide.ordinary((0.005, 0.0, 0.0, 0.005, 0.0, 0.0))
-    assert not any(c.ordinary([1e-6] * len(c.coordinates)) for c in of.values())
+    assert gap.is_ordinary((0.0015,))
+    assert not gap.is_ordinary((0.003,))
+    assert guide.is_ordinary((0.001, 0.0, 0.0, 0.0015, 0.0, 0.0))
+    assert not guide.is_ordinary((0.005, 0.0, 0.0, 0.005, 0.0, 0.0))
+    assert not any(c.is_ordinary([1e-6] * len(c.coordinates)) for c in of.values())
 
 
 def test_sides_that_are_free_have_no_stiffness():

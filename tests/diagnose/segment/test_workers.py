@@ -12,7 +12,7 @@ from tests.diagnose.segment.rigs import engine, silent
 @pytest.fixture
 def jobs():
     """Two presses to different depths."""
-    base = engine().prepared.presses.press_job(engine().model)
+    base = engine().first_presses.presses.press_job(engine().model)
     return [type(base)(base.model, base.tet_mesh, depth, (0.5, 1.0)) for depth in (0.02, 0.03)]
 
 

@@ -52,8 +52,9 @@ def test_columns_are_means_of_the_past_drive():
 
 def test_the_evidence_finds_the_prior_that_drew_the_response():
     columns = RNG.standard_normal((400, 60))
-    found = [ridge_by_evidence(Sums.from_columns(columns, columns @ RNG.normal(0.0, 0.7, 60) + RNG.standard_normal(400)),
-                               np.zeros(60), np.ones(60, dtype=bool)) for _ in range(10)]  # fmt: skip
+    drawn = [columns @ RNG.normal(0.0, 0.7, 60) + RNG.standard_normal(400) for _ in range(10)]
+    ridge = np.ones(60, dtype=bool)
+    found = [ridge_by_evidence(Sums.from_columns(columns, values), np.zeros(60), ridge) for values in drawn]
     assert np.mean(found) == pytest.approx(0.7, rel=0.1)
 
 

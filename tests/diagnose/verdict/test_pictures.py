@@ -9,7 +9,7 @@ from matplotlib.image import imread
 from diagnose.findings import Fit, LocatedExcess
 from diagnose.forward import Setting
 from diagnose.pictures.evidence import draw_gains, draw_shares
-from diagnose.pictures.overview import EDGES_HZ, band_of, draw_overview, shares
+from diagnose.pictures.overview import BAND_EDGES_HZ, band_number, draw_overview, excess_percent
 from diagnose.pictures.run import channels_to_draw, draw_run
 from tests.cases import for_each
 from tests.diagnose.verdict.toy import LEAK, RELAXING, fitted, found, toy_recording, toy_run
@@ -37,13 +37,13 @@ def share_of(colour, path):
     ("band", "column"), [((0.0, 0.4), 0), ((0.4, 0.8), 0), ((1.0, 2.0), 1), ((5.0, 10.0), 2), ((320.0, 640.0), 6)]
 )
 def test_a_band_falls_into_the_column_that_holds_its_middle(band, column):
-    assert band_of(place(band=band)) == column
-    assert len(EDGES_HZ) == 8
+    assert band_number(place(band=band)) == column
+    assert len(BAND_EDGES_HZ) == 8
 
 
 def test_a_cell_shows_the_excess_of_all_its_presses():
     places = [place(share=0.2), place(press=1, share=0.1), place(run="quick", share=0.3), place(phase="after")]
-    table = shares(places, [("slow", "voltage_V"), ("quick", "voltage_V")], "hold", [0, band_of(places[0])])
+    table = excess_percent(places, [("slow", "voltage_V"), ("quick", "voltage_V")], "hold", [0, band_number(places[0])])
     assert table[:, 1] == pytest.approx([30.0, 30.0])
     assert np.isnan(table[:, 0]).all()
 

@@ -12,11 +12,11 @@ from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.next_press.choose import next_presses
 from diagnose.verdict.content import verdict
 from diagnose.verdict.names import (
-    WHERE,
+    COMPONENT_WORDS,
+    common_words,
     component_words,
-    in_common,
     interval_words,
-    listed,
+    join_words,
     mechanism_words,
     setting_words,
 )
@@ -158,28 +158,28 @@ def off(mechanism, component):
 
 def test_what_explanations_have_in_common():
     leaks = [(off("charge-leakage", where),) for where in ("readout", "film")]
-    assert in_common(leaks) == "the film or its input loses charge"
+    assert common_words(leaks) == "the film or its input loses charge"
     mixed = [(off(name, "medium2"),) for name in ("viscoelasticity", "property-error")]
-    assert in_common(mixed) == "medium 2 behaves otherwise than stated"
-    assert in_common([*leaks, *mixed]) == in_common(mixed[1:]) == ""
+    assert common_words(mixed) == "medium 2 behaves otherwise than stated"
+    assert common_words([*leaks, *mixed]) == common_words(mixed[1:]) == ""
 
 
 @for_each(("modulus", "thickness", "gives_way"), [(-0.3, 0.0, True), (0.1, 0.2, True), (0.3, 0.0, False)])
 def test_a_softer_or_thicker_medium_gives_way_as_a_bond_does(modulus, thickness, gives_way):
     medium = Setting(property_error("medium2", ("modulus", "thickness")), (modulus, thickness))
-    told = in_common([(off("adhesive-compliance", "bond-base"),), (medium,)])
+    told = common_words([(off("adhesive-compliance", "bond-base"),), (medium,)])
     assert told == ("something in series with the film gives way" if gives_way else "")
     foam = off("foam-densification", "medium1")
-    assert in_common([(foam,), (medium,)]) == "a layer is stiffer or softer than its stated law"
+    assert common_words([(foam,), (medium,)]) == "a layer is stiffer or softer than its stated law"
 
 
 def test_explanations_by_two_have_the_one_in_common_that_is_in_all_of_them():
     slow = off("low-pass", "readout")
     soft = [off("adhesive-compliance", bond) for bond in ("bond-base", "bond-film-medium2")]
     stiff = off("property-error", "medium1")
-    told = in_common([(slow, one) for one in soft])
+    told = common_words([(slow, one) for one in soft])
     assert told == "the amplifier filters out fast changes and something in series with the film gives way"
-    assert in_common([(slow, soft[0]), (stiff, slow)]) == "the amplifier filters out fast changes and something else"
+    assert common_words([(slow, soft[0]), (stiff, slow)]) == "the amplifier filters out fast changes and something else"
 
 
 def test_how_far_the_best_unnamed_model_would_come_is_said_and_written(recording):
@@ -232,7 +232,7 @@ def test_high_and_low_are_meant_along_the_signal(recording, factor, side):
 def test_every_mechanism_and_component_has_words():
     assert vocabulary().keys() == MECHANISMS.keys()
     components = {part for kind in MECHANISMS.values() for part in kind.components if not part.startswith("channel")}
-    assert components <= WHERE.keys()
+    assert components <= COMPONENT_WORDS.keys()
     assert mechanism_words("crosstalk", "channel-2") == "other channels couple into channel 2"
 
 
@@ -283,8 +283,8 @@ def test_intervals_and_lists():
     )
     assert interval_words("order", Interval(2.0, 2.0, 2.0, "", fixed=True)) == "order 2"
     assert interval_words("mu_MPa[1]", Interval(3.0, 3.0, 3.0, "MPa", fixed=True)) == "mu (term 2) 3 MPa"
-    assert listed(["a", "b", "c"], "or") == "a, b or c"
-    assert listed(["a"]) == "a"
+    assert join_words(["a", "b", "c"], "or") == "a, b or c"
+    assert join_words(["a"]) == "a"
 
 
 def test_of_a_law_with_many_constants_only_what_they_come_to(recording):

@@ -10,7 +10,7 @@ from diagnose.findings import LocatedExcess
 from diagnose.forward import Setting
 from diagnose.inference import diagnose as inference
 from diagnose.verdict import resimulation
-from diagnose.verdict.resimulation import Resimulated
+from diagnose.verdict.resimulation import Resimulation
 from mesh.types import MeshingError
 from softdot.commands import diagnose as run
 from softdot.commands.diagnose import short_text
@@ -229,7 +229,7 @@ def test_ctrl_c_leaves_nothing(tmp_path, diagnosed, finding, monkeypatch):
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(resimulation, "_resimulated", interrupted)
+    monkeypatch.setattr(resimulation, "_resimulate_run", interrupted)
     status, verdict, said = diagnosed(write_toy(tmp_path / "rig"))
     assert (status, verdict) == (130, None)
     assert said == "softdot: interrupted, nothing was written\n"
@@ -267,6 +267,6 @@ def test_what_the_full_model_pressed_is_drawn_first():
     recording = toy_recording(runs=tuple(toy_run(f"run {n}") for n in range(6)))
     places = [LocatedExcess(f"run {n}", "voltage_V", "hold", 0, (0.0, 2.0), 9.0, 1e-3, 0.1 * n, "") for n in range(6)]
     findings = replace(found(recording, **NAMED), places=tuple(places))
-    pressed = Resimulated("run 1", "held-out", "3D FEM", {}, {}, {}, {})
+    pressed = Resimulation("run 1", "held-out", "3D FEM", {}, {}, {}, {})
     drawn = page.runs_to_draw(recording, findings, [pressed])
     assert [label for label, _ in drawn] == ["run 1", "run 5", "run 4", "run 3"]

@@ -12,7 +12,7 @@ from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.next_press.choose import next_presses
 from diagnose.verdict.content import verdict
 from diagnose.verdict.names import interval_words, mechanism_words
-from diagnose.verdict.resimulation import Resimulated
+from diagnose.verdict.resimulation import Resimulation
 from diagnose.verdict.words import sentences
 from softdot.diagnosis.report import page_text
 from softdot.json_files import plain
@@ -172,7 +172,7 @@ def test_the_title_does_not_say_that_nothing_explains_what_several_do(recording,
 
 def test_the_error_of_the_full_model_is_told_as_its_own(recording, of_the_toy):
     """It is another model on other presses: no two numbers stand under one name."""
-    one = Resimulated(
+    one = Resimulation(
         "slow", "held-out", "3D FEM", {"voltage_V": 0.01, "force_N": 0.02}, {"voltage_V": 1.2, "force_N": 0.05},
         {"voltage_V": 0.047, "force_N": 0.013}, {},
     )  # fmt: skip

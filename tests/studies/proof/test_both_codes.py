@@ -47,7 +47,10 @@ def test_force_and_charge_of_a_press_agree(name, tmp_path):
     bench = BENCHES[name]
     told = engine_of(bench, tmp_path)
     depths = (SHARES[1:] if name.startswith("thick") else SHARES) * bench.deepest_mm
-    table, of = told.prepared.fit.table[:, 0], np.linspace(0.0, told.prepared.depth_mm, len(told.prepared.fit.table))
+    table, of = (
+        told.first_presses.fit.table[:, 0],
+        np.linspace(0.0, told.first_presses.depth_mm, len(told.first_presses.fit.table)),
+    )
     mine = np.column_stack([np.interp(depths, of, table[:, n]) for n in (0, 2)])
     true = hidden(bench.made, depths)
     allowed = [3.0 * told.accuracy[channel] for channel in ("force_N", "voltage_V")]
@@ -62,8 +65,8 @@ def test_a_medium_of_twice_the_modulus_changes_force_and_charge_alike(tmp_path):
     told.prepare([stiffer], silent)
     twice = Setting(stiffer, tuple(np.log(2.0) if one.name == "modulus" else 0.0 for one in stiffer.coordinates))
     assert stiffer.parameters(twice.values)["modulus_factor"] == pytest.approx(2.0)
-    mine = told.prepared.table_change((0.0, 0.0), [twice])[:, [0, 2]]
-    depths = np.array(SHARES_OF_CHANGES) * told.prepared.depth_mm
+    mine = told.first_presses.table_change((0.0, 0.0), [twice])[:, [0, 2]]
+    depths = np.array(SHARES_OF_CHANGES) * told.first_presses.depth_mm
     twice_as_stiff = applied(baseline(bench), bench, {"modulus-medium2": 20.0}).made
     before, after = hidden(bench.made, depths), hidden(twice_as_stiff, depths)
     true = np.column_stack([np.log(after[:, 0] / before[:, 0]), (after[:, 1] - before[:, 1]) / before[:, 0]])
@@ -79,8 +82,8 @@ def test_a_base_that_has_come_apart_from_its_rims_changes_force_and_charge_alike
     setting = Setting(loose, tuple(0.5 if one.name == "rim" else 0.0 for one in loose.coordinates))
     told.prepare([loose], silent)
     told.refine([setting], silent)
-    mine = told.prepared.table_change((0.0, 0.0), [setting])[:, [0, 2]]
-    depths = np.array(SHARES_OF_CHANGES) * told.prepared.depth_mm
+    mine = told.first_presses.table_change((0.0, 0.0), [setting])[:, [0, 2]]
+    depths = np.array(SHARES_OF_CHANGES) * told.first_presses.depth_mm
     half_loose = applied(baseline(bench), bench, {"loose-base": 10.0}).made
     before, after = hidden(bench.made, depths), hidden(half_loose, depths)
     true = np.column_stack([np.log(after[:, 0] / before[:, 0]), (after[:, 1] - before[:, 1]) / before[:, 0]])
@@ -93,7 +96,7 @@ def test_force_and_every_charge_of_several_electrodes_agree_wherever_the_dot_sta
     """Charges within the stated error of the largest of them, as the model's error is one of the film."""
     bench = BENCHES["row-free"]
     told = engine_of(bench, tmp_path)
-    prepared, _ = told.stands.prepared_at((place_mm, 0.0))
+    prepared, _ = told.dot_positions.presses_at((place_mm, 0.0))
     depths = SHARES * bench.deepest_mm
     table, of = prepared.fit.table[:, 0], np.linspace(0.0, prepared.depth_mm, len(prepared.fit.table))
     mine = np.column_stack([np.interp(depths, of, table[:, n]) for n in (0, 2, 3, 4)])
