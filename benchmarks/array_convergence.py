@@ -17,7 +17,7 @@ import numpy as np
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.matrix import CrosstalkMatrix, crosstalk
 from softdot.arrays.presses import ArrayPresses
-from softdot.config.default_design import completed
+from softdot.config.default_design import with_default_design
 from softdot.config.loading import config_from
 
 SIZES_MM = ((0.8, 0.25), (0.55, 0.17), (0.4, 0.12))
@@ -40,7 +40,7 @@ def matrix(columns: int, rows: int, joined: dict[str, list[str]], sizes_mm: tupl
         "press": {"indentation_mm": 0.3, "load_steps": 2},
         "mesh": dict(zip(("element_size_mm", "contact_element_size_mm"), sizes_mm, strict=True)),
     }
-    return crosstalk(ArrayCase(config_from(completed(tables))), ArrayPresses())
+    return crosstalk(ArrayCase(config_from(with_default_design(tables))), ArrayPresses())
 
 
 def row(found: CrosstalkMatrix) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from foundation.errors import InputError
-from softdot.config.default_design import completed
+from softdot.config.default_design import with_default_design
 from softdot.config.loading import config_from, load_config
 from softdot.config.model import refuse_array
 from softdot.config.schema import Config
@@ -50,7 +50,7 @@ class Case(PreparedPress):
         """
         if config is not None and tables:
             raise TypeError("give either a configuration or its tables")
-        super().__init__(config if config is not None else config_from(completed(tables)))
+        super().__init__(config if config is not None else config_from(with_default_design(tables)))
 
     @classmethod
     def load(cls, path: Path | str | None = None, settings: Sequence[str] = ()) -> "Case":

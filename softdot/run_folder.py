@@ -80,13 +80,13 @@ def _fill(
     """Everything but summary.json; returns the summary. Parts and pictures are made beside mesh, press and files."""
     from mesh.files.formats import write_mesh
     from mesh.types import MeshingError
-    from softdot.config.loading import idle_materials
+    from softdot.config.loading import unused_material_warnings
     from softdot.summary import heading, mesh_part, press_part, stopped_solver
     from softdot.tolerances.uncertainty import prepare, uncertainty
     from solve.fem.warm_up import compile_cheap
 
     clock, config, model = StageClock(), case.config, case.model
-    summary = {**heading(config), "warnings": [*case.warnings, *idle_materials(config)]}
+    summary = {**heading(config), "warnings": [*case.warnings, *unused_material_warnings(config)]}
     warn(summary["warnings"])
     _tell(config)
     cad = ask(make_cad, model.segment, case.dot, folder / "cad")
@@ -132,11 +132,11 @@ def _fill(
 def _tell(config: Config) -> None:
     """What a user should know before it begins: what was not stated, and that the first run takes longer."""
     from softdot.checks import COMPILE_S
-    from softdot.config.default_design import told
+    from softdot.config.default_design import default_design_line
     from solve.fem.warm_up import compiled
 
     if config.from_default:
-        LOG.info("%s", told(config.from_default, config.model_dump(mode="json")))
+        LOG.info("%s", default_design_line(config.from_default, config.model_dump(mode="json")))
     if not compiled():
         LOG.info("compiling kernels beside the mesh, once on this machine: about %.0f s", COMPILE_S)
 

@@ -27,15 +27,15 @@ def command(chosen: Namespace) -> int:
 def check_file(path: Path, settings: list[str]) -> dict[str, Any]:
     """Mistakes, warnings and the expected cost of a configuration."""
     from softdot.case import Case
-    from softdot.config.default_design import completed, from_default
-    from softdot.config.loading import config_from, idle_materials
+    from softdot.config.default_design import keys_from_default, with_default_design
+    from softdot.config.loading import config_from, unused_material_warnings
     from softdot.config.mistakes import mistakes
     from softdot.config.settings import with_settings
     from softdot.config.toml import read_toml
 
     def check(tables: Mapping[str, Any]) -> tuple[Any, ...]:
-        case = Case(config_from(completed(tables)))
-        return case.config, [*case.warnings, *idle_materials(case.config)], case.cost
+        case = Case(config_from(with_default_design(tables)))
+        return case.config, [*case.warnings, *unused_material_warnings(case.config)], case.cost
 
     stated = with_settings(read_toml(path), settings)
     found, checked = mistakes(stated, check)
@@ -44,7 +44,7 @@ def check_file(path: Path, settings: list[str]) -> dict[str, Any]:
         return summary
     config, warnings, cost = checked
     told: dict[str, Any] = plain({"warnings": warnings, "expected": vars(cost)})
-    return {**summary, **told, "from_default": list(from_default(stated, config.model_dump(mode="json")))}
+    return {**summary, **told, "from_default": list(keys_from_default(stated, config.model_dump(mode="json")))}
 
 
 def short_text(summary: dict[str, Any]) -> str:

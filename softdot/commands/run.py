@@ -64,7 +64,7 @@ def _halved(planes: Sequence[str]) -> list[str]:
 def short_text(summary: dict[str, Any], output: str) -> str:
     """The deepest step and where to look, in a few lines."""
     from export.report import plus_minus
-    from softdot.config.default_design import told
+    from softdot.config.default_design import default_design_line
 
     lines = []
     if summary.get("indentation_mm"):
@@ -76,5 +76,5 @@ def short_text(summary: dict[str, Any], output: str) -> str:
             f"open-circuit voltage {summary['open_circuit_voltage_V'][-1]:.4g} V{voltage}"
         )
     if summary.get("from_default"):
-        lines.append(told(summary["from_default"], summary["config"]))
+        lines.append(default_design_line(summary["from_default"], summary["config"]))
     return "\n".join([*lines, f"{output}/report.html"])

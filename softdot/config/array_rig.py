@@ -12,10 +12,11 @@ from softdot.config.schema import Config
 
 
 def as_one_segment(config: Config, runs: Sequence[RunTable]) -> tuple[Config, tuple[RunTable, ...]]:
-    """The configuration with an electrode on each segment, and runs whose dot stands over the one that they press.
+    """The configuration with an electrode on each segment of its array, and the runs with their dots over the segments
+    that they press.
 
-    Both as they are where there is no array. InputError for a run over a segment that is not there, and for an array
-    with islands, grooves or a grid: those are in no mesh of one segment.
+    Where there is no array both are returned unchanged. InputError for a run over a segment that is not there, and for
+    an array with islands, grooves or a grid, which no mesh of one segment has.
     """
     if config.array is None:
         for number, run in enumerate(runs):
@@ -26,12 +27,12 @@ def as_one_segment(config: Config, runs: Sequence[RunTable]) -> tuple[Config, tu
         return config, tuple(runs)
     layout = array_layout(config.array, config.segment, config.dot)
     check_array(layout)
-    _refuse_what_ends(layout)
-    return as_segment(config, layout), tuple(_placed(run, number, layout) for number, run in enumerate(runs))
+    _refuse_interrupted_layers(layout)
+    return as_segment(config, layout), tuple(_run_over_segment(run, number, layout) for number, run in enumerate(runs))
 
 
-def _refuse_what_ends(layout: ArrayLayout) -> None:
-    """Diagnoses press one segment."""
+def _refuse_interrupted_layers(layout: ArrayLayout) -> None:
+    """InputError for an array whose layers do not all run through: a diagnosis presses one segment."""
     for name in ("grooves", "grid_layers"):
         if getattr(layout.array, name):
             raise InputError(f"array.{name}: a diagnosis takes arrays whose layers run through without them")
@@ -42,7 +43,8 @@ def _refuse_what_ends(layout: ArrayLayout) -> None:
         )
 
 
-def _placed(run: RunTable, number: int, layout: ArrayLayout) -> RunTable:
+def _run_over_segment(run: RunTable, number: int, layout: ArrayLayout) -> RunTable:
+    """The run with its dot moved over the segment that run.over names; the same run where it names none. InputError."""
     if run.over is None:
         return run
     found = [place for place in layout.places if (place.row, place.column) == run.over]

@@ -14,7 +14,9 @@ from typing import Any
 from softdot.config.toml import parse_toml
 
 THICKNESSES = {"medium1": "thickness_mm", "film": "thickness_um", "medium2": "thickness_mm"}
+"""Layer -> its key of the thickness; a segment that states all of them has a stack of its own."""
 DOT_SIZES = {"standard", "base_diameter_mm", "height_mm", "radius_mm"}
+"""Keys that give a dot a size; with any of them the standard of the default dot is not taken."""
 
 
 @cache
@@ -23,8 +25,8 @@ def default_design() -> dict[str, Any]:
     return parse_toml(files(__package__).joinpath("default.toml").read_text("utf-8"), "default.toml")
 
 
-def completed(tables: Mapping[str, Any]) -> dict[str, Any]:
-    """The tables of a file with what it leaves out of the default design; what is malformed stays as it is."""
+def with_default_design(tables: Mapping[str, Any]) -> dict[str, Any]:
+    """The tables of a file with all that it leaves out of the default design; malformed tables stay as they are."""
     segment, dot = tables.get("segment", {}), tables.get("dot", {})
     if not isinstance(segment, dict) or not isinstance(dot, dict):
         return dict(tables)
@@ -41,14 +43,14 @@ def completed(tables: Mapping[str, Any]) -> dict[str, Any]:
     return whole
 
 
-def from_default(tables: Mapping[str, Any], config: Mapping[str, Any]) -> tuple[str, ...]:
+def keys_from_default(tables: Mapping[str, Any], config: Mapping[str, Any]) -> tuple[str, ...]:
     """Dotted keys of the default design that a file does not state and that hold in its configuration.
 
     tables : the file as read. config : the whole configuration as nested tables.
     """
     standard = ("dot", "standard")  # also where the schema leaves it open, and the dot is that of the default
-    absent = (key for key in _leaves(default_design()) if _at(tables, key) is None)
-    kept = [key for key in absent if _at(config, key) is not None or key == standard]
+    absent = (key for key in _leaves(default_design()) if _value_at(tables, key) is None)
+    kept = [key for key in absent if _value_at(config, key) is not None or key == standard]
     dot = config.get("dot", {})
     if dot.get("shape") == "plate" or any(dot.get(size) is not None for size in DOT_SIZES):
         kept = [key for key in kept if key != standard or dot.get("standard") is not None]
@@ -56,15 +58,18 @@ def from_default(tables: Mapping[str, Any], config: Mapping[str, Any]) -> tuple[
 
 
 def _states_its_stack(segment: Mapping[str, Any]) -> bool:
+    """Whether a table [segment] gives all three thicknesses."""
     return all(key in _table(segment, name) for name, key in THICKNESSES.items())
 
 
 def _table(tables: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    """The inner table of that name, empty where there is none."""
     found = tables.get(name, {})
     return found if isinstance(found, dict) else {}
 
 
 def _leaves(tables: Mapping[str, Any], way: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
+    """The path of every value in nested tables, as a tuple of keys."""
     for name, value in tables.items():
         if isinstance(value, dict):
             yield from _leaves(value, (*way, name))
@@ -72,13 +77,15 @@ def _leaves(tables: Mapping[str, Any], way: tuple[str, ...] = ()) -> Iterator[tu
             yield (*way, name)
 
 
-def _at(tables: Any, way: tuple[str, ...]) -> Any:
+def _value_at(tables: Any, way: tuple[str, ...]) -> Any:
     """The value at a dotted key, None where there is none."""
     for name in way:
         tables = tables.get(name) if isinstance(tables, Mapping) else None
     return tables
 
 
-def told(keys: Sequence[str], config: Mapping[str, Any]) -> str:
-    """What came from the default design, in a line: its keys, or that all of it did."""
-    return f"from the default design: {'everything' if tuple(keys) == from_default({}, config) else ', '.join(keys)}"
+def default_design_line(keys: Sequence[str], config: Mapping[str, Any]) -> str:
+    """A line that names the keys taken from the default design, or says that everything was."""
+    return (
+        f"from the default design: {'everything' if tuple(keys) == keys_from_default({}, config) else ', '.join(keys)}"
+    )

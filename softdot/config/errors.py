@@ -19,7 +19,9 @@ BOUNDS = {
     "less_than": ("lt", "below"),
     "less_than_equal": ("le", "at most"),
 }
+"""Kind of a pydantic error about a number -> the bound in its context, and the word for it."""
 LENGTHS = {"too_short": ("min_length", "at least"), "too_long": ("max_length", "at most")}
+"""Kind of a pydantic error about a list -> the length in its context, and the word for it."""
 KINDS = {
     "float_type": "must be a plain number; its unit is part of the key",
     "float_parsing": "must be a plain number; its unit is part of the key",
@@ -34,6 +36,7 @@ KINDS = {
     "model_type": "must be a table",
     "model_attributes_type": "must be a table",
 }
+"""Kind of any other pydantic error -> what a value must be."""
 
 
 def sentence(error: ValidationError, tables: Mapping[str, Any], model: type[Table]) -> str:
@@ -42,19 +45,19 @@ def sentence(error: ValidationError, tables: Mapping[str, Any], model: type[Tabl
     problems = sorted(error.errors(include_url=False), key=lambda p: rank.get(p["type"], 1))
     choices = [p["ctx"]["expected"] for p in problems if p["type"] == "literal_error" and _same_value(p, problems[0])]
     said = _explain(problems[0], tables, model, choices)
-    hint = not_modelled(*_asked_for(problems[0]))
+    hint = not_modelled(*_unknown_word(problems[0]))
     return f"{said}; {hint}" if hint else said
 
 
-def _asked_for(problem: ErrorDetails) -> tuple[str, str]:
-    """The key that is none, or the value that is none, and the dotted key of its table."""
+def _unknown_word(problem: ErrorDetails) -> tuple[str, str]:
+    """The key or the value that the schema does not know, and the dotted key of its table."""
     *table, last = problem["loc"] or ("",)
     if problem["type"] == "extra_forbidden":
-        return str(last), dotted(table)
+        return str(last), dotted_key(table)
     if problem["type"] == "literal_error":
-        return str(problem["input"]), dotted(table)
+        return str(problem["input"]), dotted_key(table)
     unknown = re.match("name = '(.*?)'", str(problem.get("ctx", {}).get("error", "")))
-    return (unknown[1] if unknown else ""), dotted(problem["loc"])
+    return (unknown[1] if unknown else ""), dotted_key(problem["loc"])
 
 
 def _same_value(one: ErrorDetails, other: ErrorDetails) -> bool:
@@ -63,14 +66,15 @@ def _same_value(one: ErrorDetails, other: ErrorDetails) -> bool:
 
 
 def _explain(problem: ErrorDetails, tables: Mapping[str, Any], model: type[Table], choices: Sequence[str]) -> str:
+    """The sentence for one problem, without the hint at what is not modelled."""
     kind, context = problem["type"], problem.get("ctx", {})
-    path = _existing(problem["loc"], tables, kind)
-    key = dotted(path)
+    path = _path_in_tables(problem["loc"], tables, kind)
+    key = dotted_key(path)
     if kind == "extra_forbidden":
         known = {name for table in tables_at(problem["loc"][:-1], model) for name in table.model_fields}
-        return f"{key} is not a key; {_meant(path, known, model)}"
+        return f"{key} is not a key; {_suggestion(path, known, model)}"
     if kind == "missing":
-        return f"{key} is missing{_described(problem['loc'], model)}"
+        return f"{key} is missing{_missing_key_description(problem['loc'], model)}"
     if kind == "value_error":
         return _own_message(key, problem, model)
     if kind == "union_tag_invalid":
@@ -78,19 +82,19 @@ def _explain(problem: ErrorDetails, tables: Mapping[str, Any], model: type[Table
         known = {name.strip(" '") for name in str(context["expected_tags"]).split(",")}
         return f"{key}.model = '{tag}': {nearest_name_hint(tag, known)}"
     if kind == "literal_error":
-        return f"{key} = {shown(problem['input'])}: must be {_either(choices)}"
+        return f"{key} = {value_text(problem['input'])}: must be {_alternatives(choices)}"
     if kind in BOUNDS:
         name, word = BOUNDS[kind]
-        return f"{key} = {shown(problem['input'])}: must be {word} {context[name]:g}"
+        return f"{key} = {value_text(problem['input'])}: must be {word} {context[name]:g}"
     if kind in LENGTHS:
         name, word = LENGTHS[kind]
-        return f"{key} = {shown(problem['input'])}: must have {word} {_values(context[name])}"
+        return f"{key} = {value_text(problem['input'])}: must have {word} {_value_count(context[name])}"
     text = KINDS.get(kind, problem["msg"][:1].lower() + problem["msg"][1:])
-    return f"{key} = {shown(problem['input'])}: {text}"
+    return f"{key} = {value_text(problem['input'])}: {text}"
 
 
-def _meant(path: Sequence[str | int], known: set[str], model: type[Table]) -> str:
-    """What an unknown key was probably meant to be; a table of the segment may stand outside it by mistake."""
+def _suggestion(path: Sequence[str | int], known: set[str], model: type[Table]) -> str:
+    """A hint at the key that was probably meant; a table of the segment may stand outside it by mistake."""
     name = str(path[-1])
     inner = {key for table in tables_at(("segment",), model) for key in table.model_fields}
     if len(path) == 1 and name in inner:
@@ -101,15 +105,15 @@ def _meant(path: Sequence[str | int], known: set[str], model: type[Table]) -> st
 
 
 def _unitless(key: str) -> str:
-    """thickness_um -> thickness."""
+    """A key without the unit at its end: thickness_um -> thickness."""
     return re.sub(r"_(mm|um|deg|pF|MOhm|Hz|MPa|kPa|GPa|Pa|m|cm|V|mV|N|mN|s|ms)$", "", key)
 
 
 def _own_message(key: str, problem: ErrorDetails, model: type[Table]) -> str:
-    """A message of our own validators: about a value, about a key in a table, or about the whole."""
+    """The sentence for an error of our own validators: about a value, about a key in a table, or about the whole."""
     text = str(problem["ctx"]["error"])
     if not isinstance(problem["input"], dict):
-        return f"{key} = {shown(problem['input'])}: {text}"
+        return f"{key} = {value_text(problem['input'])}: {text}"
     if not key:
         return text
     names = {name for table in tables_at(problem["loc"], model) for name in table.model_fields}
@@ -117,25 +121,25 @@ def _own_message(key: str, problem: ErrorDetails, model: type[Table]) -> str:
     return f"{key}.{text}" if first in names else f"{key}: {text}"
 
 
-def _values(count: int) -> str:
-    """1 -> '1 value', 2 -> '2 values'."""
+def _value_count(count: int) -> str:
+    """The words for a number of values: 1 -> '1 value', 2 -> '2 values'."""
     return f"{count} value" if count == 1 else f"{count} values"
 
 
-def _either(choices: Sequence[str]) -> str:
-    """["'a' or 'b'", "'c'"] -> "'a', 'b' or 'c'"."""
+def _alternatives(choices: Sequence[str]) -> str:
+    """Alternatives joined in words: ["'a' or 'b'", "'c'"] -> "'a', 'b' or 'c'"."""
     words = [word for choice in choices for word in re.split(r", | or ", choice)]
     return " or ".join([*([", ".join(words[:-1])] if words[:-1] else []), words[-1]])
 
 
-def dotted(path: Sequence[str | int]) -> str:
-    """('dot', 'offset_mm', 1) -> 'dot.offset_mm[1]'."""
-    text = "".join(f"[{part}]" if isinstance(part, int) else f".{cut(str(part))}" for part in path)
+def dotted_key(path: Sequence[str | int]) -> str:
+    """The dotted key of a path: ('dot', 'offset_mm', 1) -> 'dot.offset_mm[1]'."""
+    text = "".join(f"[{part}]" if isinstance(part, int) else f".{abridge(str(part))}" for part in path)
     return text.removeprefix(".")
 
 
-def _existing(loc: Sequence[str | int], tables: Any, kind: str) -> list[str | int]:
-    """The location without the names of union members, which pydantic puts between the keys."""
+def _path_in_tables(loc: Sequence[str | int], tables: Any, kind: str) -> list[str | int]:
+    """The location of an error without the names of union members, which pydantic puts between the keys."""
     path: list[str | int] = []
     for number, part in enumerate(loc):
         last = number == len(loc) - 1
@@ -164,13 +168,14 @@ def tables_at(loc: Sequence[str | int], model: type[Table]) -> list[type[Table]]
 
 
 def _models_in(annotation: Any) -> list[type[Table]]:
+    """The tables among the members of a type annotation."""
     if isinstance(annotation, type) and issubclass(annotation, Table):
         return [annotation]
     return [found for inner in get_args(annotation) for found in _models_in(inner)]
 
 
-def _described(loc: Sequence[str | int], model: type[Table]) -> str:
-    """': ' and the description of the missing key."""
+def _missing_key_description(loc: Sequence[str | int], model: type[Table]) -> str:
+    """A colon and the description of a missing key, "" where the schema has none."""
     for table in tables_at(loc[:-1], model):
         field = table.model_fields.get(str(loc[-1]))
         if field is not None and field.description:
@@ -178,48 +183,51 @@ def _described(loc: Sequence[str | int], model: type[Table]) -> str:
     return ""
 
 
-def shown(value: Any) -> str:
-    """A value much as TOML writes it, cut when long."""
+def value_text(value: Any) -> str:
+    """A value much as TOML writes it, with at most 60 characters."""
     if isinstance(value, str):
         text = f"'{value}'"
     elif isinstance(value, float):
         text = f"{value:g}"
     else:
         text = json.dumps(value, default=str)
-    return cut(text)
+    return abridge(text)
 
 
-def cut(text: str) -> str:
-    """At most 60 characters, for a message."""
+def abridge(text: str) -> str:
+    """Shorten a text to at most 60 characters, for a message."""
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
-LARGEST = 1e12
+LARGEST_NUMBER = 1e12
+"""Largest magnitude of a number in a configuration, in the unit of its key; smaller ones than its inverse are
+round-off.
+"""
 
 
 def refuse_absurd_numbers(tables: Any) -> None:
-    """InputError for a finite number above 1e12 in size."""
-    for path, number in _numbers(tables, ()):
-        if LARGEST < abs(number) < float("inf"):
-            raise InputError(f"{dotted(path)} = {shown(number)}: must be at most {LARGEST:.0e} in size")
+    """InputError for a finite number whose magnitude is above LARGEST_NUMBER."""
+    for path, number in _numbers_with_paths(tables, ()):
+        if LARGEST_NUMBER < abs(number) < float("inf"):
+            raise InputError(f"{dotted_key(path)} = {value_text(number)}: must be at most {LARGEST_NUMBER:.0e} in size")
 
 
 def without_round_off(value: Any) -> Any:
-    """The tables with zero for every number below 1e-12 in size: a script that subtracts leaves -1.1e-16."""
+    """The tables with zero for every number below 1e-12 in magnitude: a script that subtracts leaves -1.1e-16."""
     if isinstance(value, dict):
         return {key: without_round_off(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [without_round_off(item) for item in value]
-    return 0.0 if isinstance(value, float) and abs(value) < 1.0 / LARGEST else value
+    return 0.0 if isinstance(value, float) and abs(value) < 1.0 / LARGEST_NUMBER else value
 
 
-def _numbers(value: Any, path: tuple[str | int, ...]) -> Iterator[tuple[tuple[str | int, ...], float]]:
+def _numbers_with_paths(value: Any, path: tuple[str | int, ...]) -> Iterator[tuple[tuple[str | int, ...], float]]:
     """Every number of the tables with its path."""
     if isinstance(value, dict):
         for key, item in value.items():
-            yield from _numbers(item, (*path, str(key)))
+            yield from _numbers_with_paths(item, (*path, str(key)))
     elif isinstance(value, list | tuple):
         for index, item in enumerate(value):
-            yield from _numbers(item, (*path, index))
+            yield from _numbers_with_paths(item, (*path, index))
     elif isinstance(value, int | float) and not isinstance(value, bool):
         yield path, value

@@ -10,7 +10,7 @@ from geometry.parameters import Dot as Dot
 from geometry.parameters import Segment as Segment
 from geometry.parameters import Table as Table
 from mesh.options import MeshOptions as MeshOptions
-from softdot.config.loading import resolved
+from softdot.config.loading import with_implied_values
 from softdot.config.schema import Config
 from solve.materials.parameters import AnyMaterial as AnyMaterial
 from solve.materials.parameters import Material as Material
@@ -31,14 +31,14 @@ def config_hash(config: Config) -> str:
     >>> config_hash(six) == config_hash(seven)
     False
     """
-    tables = resolved(config).model_dump(mode="json", exclude={"fabrication"})
+    tables = with_implied_values(config).model_dump(mode="json", exclude={"fabrication"})
     text = json.dumps(tables, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()
 
 
 def input_hash(config: Config) -> str:
-    """SHA-256 of configuration and of the files of its waveform and mesh, where it names them: all that a user states
-    of a press.
+    """SHA-256, in hexadecimal, of a configuration and of the waveform and mesh files that it names: of all that a user
+    states of a press.
     """
     waveform = config.press.waveform
     file = Path(waveform.file) if waveform is not None and waveform.file is not None else None

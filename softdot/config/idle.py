@@ -1,4 +1,4 @@
-"""What no longer acts beside a value that was put into its table is taken out, so that modes can be exchanged."""
+"""Keys that no longer act beside a newly set value are removed from its table, so that modes can be exchanged."""
 
 from collections.abc import Sequence
 from contextlib import suppress
@@ -9,9 +9,9 @@ from softdot.config.schema import Config
 
 
 def take_out_idle(tables: Any, way: Sequence[str | int]) -> None:
-    """Take what does not act beside the value at a place out of its table; the value itself stays.
+    """Remove from the table of a value, in place, the keys that do not act beside it; the value itself stays.
 
-    tables : of a configuration, as read; changed in place. way : names and numbers that lead to the value.
+    tables : those of a configuration, as read. way : names and numbers that lead to the value.
     """
     with suppress(LookupError, TypeError):  # the table of the value may be gone, or be none
         for part in way[:-1]:
@@ -23,8 +23,8 @@ def take_out_idle(tables: Any, way: Sequence[str | int]) -> None:
                     del tables[name]
 
 
-def stated(tables: Any, way: Sequence[str | int]) -> bool:
-    """Whether there is a value at a place."""
+def has_value(tables: Any, way: Sequence[str | int]) -> bool:
+    """Whether nested tables hold a value at a path of names and numbers."""
     with suppress(LookupError, TypeError):
         for part in way:
             tables = tables[part]

@@ -15,7 +15,7 @@ from geometry.parameters import Segment as Segment
 from geometry.parameters import Table as Table
 from geometry.stack import layers
 from mesh.options import MeshOptions as MeshOptions
-from softdot.config.default_design import completed, default_design, from_default
+from softdot.config.default_design import default_design, keys_from_default, with_default_design
 from softdot.config.errors import refuse_absurd_numbers, sentence, without_round_off
 from softdot.config.schema import Config
 from softdot.config.settings import naming_the_flag, with_settings
@@ -42,26 +42,26 @@ def load_config(path: Path | str | None = None, settings: Sequence[str] = ()) ->
     """
     tables = with_settings(default_design() if path is None else read_toml(Path(path)), settings)
     with naming_the_flag(settings):
-        config = config_from(completed(tables))
+        config = config_from(with_default_design(tables))
     stated = tables if path is not None else with_settings({}, settings)
-    config._from_default = from_default(stated, config.model_dump(mode="json"))
+    config._from_default = keys_from_default(stated, config.model_dump(mode="json"))
     return config
 
 
 def config_from(tables: Mapping[str, Any]) -> Config:
     """A complete configuration from the tables of a TOML file. InputError with one sentence."""
-    tables = without_round_off(_with_parents(with_built_in_constants(tables)))
+    tables = without_round_off(_with_layer_tables(with_built_in_constants(tables)))
     try:
         # JSON, because only there pydantic is strict about numbers and yet takes a list for a tuple
         config = Config.model_validate_json(json.dumps(tables, default=str), strict=True)
     except ValidationError as error:
         raise InputError(sentence(error, tables, Config)) from None
     refuse_absurd_numbers(tables)
-    return resolved(config)
+    return with_implied_values(config)
 
 
-def _with_parents(tables: Mapping[str, Any]) -> dict[str, Any]:
-    """Empty tables for missing layers, so that a message names the thickness and not the table."""
+def _with_layer_tables(tables: Mapping[str, Any]) -> dict[str, Any]:
+    """The tables with an empty one for each missing layer, so that a message names the thickness and not the table."""
     filled = dict(tables)
     segment = filled.get("segment", {})
     if isinstance(segment, dict):
@@ -70,14 +70,17 @@ def _with_parents(tables: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def with_built_in_constants(tables: Mapping[str, Any]) -> dict[str, Any]:
-    """A table that overrides a built-in material of the same model keeps the constants it does not state."""
+    """The tables, where a material that overrides a built-in one of the same model keeps the constants it does not
+    state.
+    """
     own = tables.get("materials", {})
     if not isinstance(own, dict):
         return dict(tables)
-    return {**tables, "materials": {name: _overriding(name, table) for name, table in own.items()}}
+    return {**tables, "materials": {name: _with_built_in_constants(name, table) for name, table in own.items()}}
 
 
-def _overriding(name: str, table: Any) -> Any:
+def _with_built_in_constants(name: str, table: Any) -> Any:
+    """A table of a material on top of the built-in material with its name, where both are of one model."""
     if not isinstance(table, dict):
         return table
     built_in = library_tables().get(name, {"model": "neo-hookean"})
@@ -87,7 +90,7 @@ def _overriding(name: str, table: Any) -> Any:
     return {**{key: value for key, value in built_in.items() if key not in about}, **table}
 
 
-def resolved(config: Config) -> Config:
+def with_implied_values(config: Config) -> Config:
     """The configuration with the materials it uses and the default indentation written out."""
     used = {layer.material for layer in layers(config.segment)}
     found = {name: find_material(name, config.materials, "material") for name in sorted(used)}
@@ -97,7 +100,7 @@ def resolved(config: Config) -> Config:
     return config.model_copy(update={"materials": {**found, **config.materials}, "press": press})
 
 
-def idle_materials(config: Config) -> list[str]:
-    """A warning for each material of the user's own that no layer is of: its name may be mistyped."""
+def unused_material_warnings(config: Config) -> list[str]:
+    """A warning for each material of the configuration that no layer is made of: its name may be mistyped."""
     used = {layer.material for layer in layers(config.segment)}
     return [f"materials.{name}: no layer is of this material" for name in config.materials if name not in used]

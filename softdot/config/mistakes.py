@@ -12,14 +12,14 @@ from contextlib import suppress
 from typing import Any, TypeVar
 
 from foundation.errors import InputError
-from softdot.config.errors import dotted, tables_at
+from softdot.config.errors import dotted_key, tables_at
 from softdot.config.schema import Config
-from softdot.config.toml import parsed
+from softdot.config.toml import key_path
 
-MOST = 100
-DECIDES = {"model", "name", "component"}
-"""What these say decides what else a table may hold: without it the table cannot be judged."""
-KEY = re.compile(r'(?:[\w-]+|"[^"]+")(?:\.[\w-]+|\."[^"]+"|\[\d+\])*')
+MOST_MISTAKES = 100
+DECIDING_KEYS = {"model", "name", "component"}
+"""Keys whose value decides what else their table may hold: without it the table cannot be judged."""
+DOTTED_KEY = re.compile(r'(?:[\w-]+|"[^"]+")(?:\.[\w-]+|\."[^"]+"|\[\d+\])*')
 Checked = TypeVar("Checked")
 Way = tuple[str | int, ...]
 
@@ -27,15 +27,17 @@ Way = tuple[str | int, ...]
 def mistakes(
     tables: Mapping[str, Any], check: Callable[[Mapping[str, Any]], Checked]
 ) -> tuple[list[str], Checked | None]:
-    """Every sentence with which check refuses the tables, and what it returns when there is none."""
+    """Every sentence with which check refuses the tables, at most MOST_MISTAKES, and what check returns when there is
+    none.
+    """
     found: list[str] = []
     rest = _Rest(tables)
-    while len(found) < MOST:
+    while len(found) < MOST_MISTAKES:
         try:
             checked = check(rest.tables)
         except InputError as error:
-            said = rest.as_in_the_file(str(error))
-            if said not in found and not rest.was_told(said):
+            said = rest.with_file_indices(str(error))
+            if said not in found and not rest.follows_from_earlier(said):
                 found.append(said)
             if not rest.set_aside(str(error)):
                 return found, None
@@ -45,54 +47,55 @@ def mistakes(
 
 
 class _Rest:
-    """tables : what has not been set aside. gone : list, as the file names it -> its elements that have been.
+    """The tables without the keys that have been set aside.
 
-    told : keys, as the file names them, that have been set aside, and what mistyped ones were probably meant to be.
+    gone : list, as the file names it -> numbers of its removed elements. named_keys : removed keys, as the file names
+    them, and what mistyped ones were probably meant to be.
     """
 
     def __init__(self, tables: Mapping[str, Any]) -> None:
         self.tables: dict[str, Any] = copy.deepcopy(dict(tables))
         self.gone: dict[str, list[int]] = {}
-        self.told: set[str] = set()
+        self.named_keys: set[str] = set()
 
-    def was_told(self, sentence: str) -> bool:
+    def follows_from_earlier(self, sentence: str) -> bool:
         """Whether a sentence asks for a key that is missing only because another sentence was about it."""
-        key = KEY.match(sentence)
+        key = DOTTED_KEY.match(sentence)
         if key and key[0].endswith("]") and key[0].rpartition("[")[0] in self.gone and "] is missing" in sentence:
             return True
-        return any("." in key and key in self.told for key in KEY.findall(sentence))
+        return any("." in key and key in self.named_keys for key in DOTTED_KEY.findall(sentence))
 
-    def as_in_the_file(self, sentence: str) -> str:
-        """A sentence on the rest with the indices of the file."""
-        return KEY.sub(lambda key: self._renamed(key[0]), sentence) if self.gone else sentence
+    def with_file_indices(self, sentence: str) -> str:
+        """A sentence on the rest, with elements of lists counted as in the file."""
+        return DOTTED_KEY.sub(lambda key: self._key_in_the_file(key[0]), sentence) if self.gone else sentence
 
-    def _renamed(self, key: str) -> str:
+    def _key_in_the_file(self, key: str) -> str:
         if "[" not in key:
             return key
         with suppress(ValueError):
-            return dotted(self._in_the_file(parsed(key)))
+            return dotted_key(self._in_the_file(key_path(key)))
         return key
 
     def _in_the_file(self, way: Way) -> Way:
         there: list[str | int] = []
         for part in way:
             if isinstance(part, int):
-                for gone in sorted(self.gone.get(dotted(there), [])):
+                for gone in sorted(self.gone.get(dotted_key(there), [])):
                     part += gone <= part
             there.append(part)
         return tuple(there)
 
     def set_aside(self, sentence: str) -> bool:
-        """Remove the key that a sentence begins with, or the nearest table above it; whether there was one."""
-        match = KEY.match(sentence)
+        """Remove the key that a sentence begins with, or the nearest table above it; False where there is neither."""
+        match = DOTTED_KEY.match(sentence)
         if match is None:
             return False
         with suppress(ValueError):
-            way = parsed(match[0])
+            way = key_path(match[0])
             meant = re.search(r"did you mean '([\w.]+)'", sentence)
             if meant is not None:
-                self.told.add(dotted((*self._in_the_file(way)[:-1], meant[1])))
-            if way[-1] in DECIDES and len(way) > 1:
+                self.named_keys.add(dotted_key((*self._in_the_file(way)[:-1], meant[1])))
+            if way[-1] in DECIDING_KEYS and len(way) > 1:
                 way = way[:-1]
             while way:
                 if self._remove(way) or self._remove_tags_of(way):
@@ -101,13 +104,14 @@ class _Rest:
         return False
 
     def _remove_tags_of(self, way: Way) -> bool:
-        """A key is missing that others ask for: those are what can be set aside."""
+        """Remove the keys that ask for a missing key, which itself cannot be set aside; whether there were any."""
         keys = [key for table in tables_at(way[:-1], Config) for key in table.conditional_keys()]
         tags = {tag for name, acts in keys if name == way[-1] for tag in acts.tags}
         removed = [self._remove((*way[:-1], tag)) for tag in sorted(tags)]
         return any(removed)
 
     def _remove(self, way: Way) -> bool:
+        """Remove a value and what depends on it; False where there is none."""
         *above, last = way
         table = self._at(above)
         try:
@@ -116,10 +120,10 @@ class _Rest:
         except (KeyError, IndexError, TypeError):
             return False
         *there, index = self._in_the_file(way)
-        self.told.add(dotted([*there, index]))
+        self.named_keys.add(dotted_key([*there, index]))
         if isinstance(last, int):
-            self.gone.setdefault(dotted(there), []).append(int(index))
-        for other in list(self._dependent(way, removed)):
+            self.gone.setdefault(dotted_key(there), []).append(int(index))
+        for other in list(self._dependent_keys(way, removed)):
             self._remove(other)
         return True
 
@@ -132,8 +136,8 @@ class _Rest:
                 return None
         return table
 
-    def _dependent(self, way: Way, removed: Any) -> Iterator[Way]:
-        """What can only be judged together with what stood there, the last element of a list first."""
+    def _dependent_keys(self, way: Way, removed: Any) -> Iterator[Way]:
+        """Paths of what can only be judged together with a removed value, the last element of a list first."""
         for table in tables_at(way[:-1], Config):
             yield from ((*way[:-1], name) for name, acts in table.conditional_keys() if way[-1] in acts.tags)
         if way[0] == "materials":
@@ -144,12 +148,14 @@ class _Rest:
                     yield ("segment", layer, "material")
         if way == ("segment", "effector"):
             yield ("segment", "held_layers")
-            yield from (("segment", "bonds", n) for n in self._numbers(["segment", "bonds"], "between", "effector"))
+            yield from (
+                ("segment", "bonds", n) for n in self._element_numbers(["segment", "bonds"], "between", "effector")
+            )
         for part in _components(way, removed):
-            yield from (("mechanisms", n) for n in self._numbers(["mechanisms"], "component", part))
+            yield from (("mechanisms", n) for n in self._element_numbers(["mechanisms"], "component", part))
 
-    def _numbers(self, way: Sequence[str], key: str, part: str) -> list[int]:
-        """Elements of a list of tables whose key holds something."""
+    def _element_numbers(self, way: Sequence[str], key: str, part: str) -> list[int]:
+        """Numbers, from the last, of those tables in a list whose key holds a text."""
         tables = self._at(way)
         if not isinstance(tables, list):
             return []

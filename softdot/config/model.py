@@ -1,4 +1,4 @@
-"""What the solver is told by a configuration: bonds declared, mechanisms switched on, nothing impossible."""
+"""The solver's model of a configuration: bonds declared, mechanisms switched on, impossible combinations refused."""
 
 from pydantic import ValidationError
 
@@ -66,7 +66,7 @@ def _refuse_missing_layer(key: str, component: str, model: Model) -> None:
 
 
 def _refuse_beyond_bounds(key: str, model: Model) -> None:
-    """What a mechanism makes of a table must be allowed in a configuration too."""
+    """InputError where a mechanism turns a table into one that a configuration would not allow."""
     tables: dict[str, Table] = {"segment": model.segment, "dot": model.dot}
     tables |= {f"{layer} material": material for layer, material in model.materials.items()}
     if model.readout is not None:
@@ -108,7 +108,9 @@ def _refuse_missing_channels(key: str, mechanism: Mechanism, model: Model) -> No
 
 
 def _refuse_unfelt_input(key: str, mechanism: Mechanism, model: Model) -> None:
-    """The input of a charge amplifier is a virtual ground: what is parallel to it carries nothing."""
+    """InputError for an effect parallel to the input of a charge amplifier: a virtual ground carries no current through
+    it.
+    """
     charge = model.readout is not None and model.readout.mode == "charge"
     if charge and mechanism.component in MECHANISMS[mechanism.name].parallel_to_input:
         raise InputError(

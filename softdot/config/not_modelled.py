@@ -1,4 +1,4 @@
-"""What this program does not have, in one list: the hint for whoever asks for it, and the table of docs/limits.md."""
+"""Physics and geometry that this program lacks: hints for those who ask, and the table of docs/limits.md."""
 
 import re
 from dataclasses import dataclass
@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class NotModelled:
-    """what : there is none of it. instead : what there is. words : parts of a key or a value that ask for it.
+    """One thing that is not modelled.
 
-    under : the table below which they do; nothing for any.
+    what : its name. instead : what there is in its place. words : parts of a key or a value that ask for it. under :
+    dotted key of the table below which they do; "" for any.
     """
 
     what: str

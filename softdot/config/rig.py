@@ -23,13 +23,13 @@ from solve.materials.parameters import AnyMaterial, Material, find_material
 from solve.model import Readout
 
 RIG_FILE = "rig.toml"
-OWN = frozenset(RigTables.model_fields)
+RIG_KEYS = frozenset(RigTables.model_fields)
 """Keys of rig.toml that are no configuration."""
 Kind = TypeVar("Kind", bound=Table)
 
 
 class Bench(Table):
-    """What is left of a configuration where there is no segment: a coupon test, or a geometry that is not known."""
+    """The part of a configuration that holds without a segment: for a coupon test, or an unknown geometry."""
 
     materials: dict[str, AnyMaterial] = Field({}, description="materials beside or instead of the built-in ones")
     readout: Readout | None = Field(None, description="the amplifier; leave out for open circuit")
@@ -38,10 +38,10 @@ class Bench(Table):
 
 @dataclass(frozen=True)
 class Rig:
-    """rig.toml and the samples it names. config : None where there is no segment; then bench says the rest. Of an
-    array it is the one wide segment.
+    """A rig.toml and the samples that it names.
 
-    tables : rig.toml as read. materials : the user's own.
+    tables : rig.toml as read. config : None where there is no segment, of an array the one wide segment; bench : what
+    is known without a segment.
     """
 
     folder: Path
@@ -66,7 +66,7 @@ def load_rig(folder: Path | str) -> Rig:
         raise InputError(f"recording '{folder}': has no {RIG_FILE}, which states what was built and measured")
     tables = read_toml(folder / RIG_FILE)
     try:
-        own, config, bench, readouts = _believed(tables)
+        own, config, bench, readouts = _parse_rig(tables)
     except InputError as error:
         raise InputError(f"recording '{folder / RIG_FILE}': {error}") from None
     height_mm = np.inf if config is None else layers(config.segment)[-1].top_mm
@@ -78,10 +78,10 @@ def load_rig(folder: Path | str) -> Rig:
     return Rig(folder, tables, config, bench, recording)
 
 
-def _believed(tables: Mapping[str, Any]) -> tuple[RigTables, Config | None, Bench, list[Readout | None]]:
-    """The two halves of rig.toml, and the amplifier of each run."""
-    own = _checked(RigTables, {key: tables[key] for key in OWN & tables.keys()})
-    rest = {key: value for key, value in tables.items() if key not in OWN}
+def _parse_rig(tables: Mapping[str, Any]) -> tuple[RigTables, Config | None, Bench, list[Readout | None]]:
+    """The tables of rig.toml: those of recordings, configuration, bench, and the amplifier of each run. InputError."""
+    own = _validate(RigTables, {key: tables[key] for key in RIG_KEYS & tables.keys()})
+    rest = {key: value for key, value in tables.items() if key not in RIG_KEYS}
     if own.specimen is None and own.geometry == "known":
         config, runs = as_one_segment(config_from(rest), own.runs)
         own = own.model_copy(update={"runs": runs})
@@ -92,27 +92,28 @@ def _believed(tables: Mapping[str, Any]) -> tuple[RigTables, Config | None, Benc
 
 
 def _bench(rest: Mapping[str, Any], own: RigTables) -> Bench:
+    """The bench of a coupon or an unknown geometry. InputError, also where a segment is stated."""
     if "segment" in rest:
         key = "specimen" if own.specimen is not None else "geometry = 'unknown'"
         raise InputError(f"segment and {key} exclude each other: leave one of them out")
-    bench = _checked(Bench, with_built_in_constants(rest))
+    bench = _validate(Bench, with_built_in_constants(rest))
     if own.specimen is not None:
         find_material(own.specimen.material, bench.materials, "specimen.material")
     return bench
 
 
 def _readout(run: RunTable, number: int, rest: Mapping[str, Any], bench: Bench) -> Readout | None:
-    """[readout] with the keys that this run overrides."""
+    """The amplifier of one run: [readout] with the keys that the run overrides. InputError."""
     if not run.readout:
         return bench.readout
     given = rest.get("readout", {})
     try:
-        return _checked(Bench, {"readout": Readout.override_keys(given, run.readout)}).readout
+        return _validate(Bench, {"readout": Readout.override_keys(given, run.readout)}).readout
     except InputError as error:
         raise InputError(f"runs[{number}].{error}") from None
 
 
-def _checked(kind: type[Kind], tables: Mapping[str, Any]) -> Kind:
+def _validate(kind: type[Kind], tables: Mapping[str, Any]) -> Kind:
     """Tables as one kind of table. InputError with one sentence."""
     tables = without_round_off(tables)
     try:
@@ -124,7 +125,7 @@ def _checked(kind: type[Kind], tables: Mapping[str, Any]) -> Kind:
 
 
 def _refuse_other_channels(run: Run, config: Config, folder: Path) -> None:
-    """Voltage columns are electrodes."""
+    """InputError unless a run has one column of voltage for each electrode, or none."""
     columns, electrodes = len(run.voltages), max(1, len(config.segment.film.electrodes))
     if columns not in (0, electrodes):
         raise InputError(

@@ -51,11 +51,13 @@ class Config(Table):
 
     def layer_materials(self) -> dict[str, Material]:
         """Layer name -> material. InputError for an unknown one or one of the wrong kind."""
-        return {layer.name: _fitting(layer.name, layer.material, self.materials) for layer in layers(self.segment)}
+        return {
+            layer.name: _layer_material(layer.name, layer.material, self.materials) for layer in layers(self.segment)
+        }
 
 
-def _fitting(layer: str, name: str, own: Mapping[str, Material]) -> Material:
-    """The material of a layer: piezoelectric for the film, not so for the media."""
+def _layer_material(layer: str, name: str, own: Mapping[str, Material]) -> Material:
+    """The material of a layer: a piezoelectric one for the film, another one for the media. InputError."""
     key = f"segment.{layer}.material"
     material = find_material(name, own, key)
     if isinstance(material, PiezoelectricFilm) != (layer == "film"):

@@ -8,7 +8,7 @@ from typing import Any
 
 from foundation.errors import InputError
 from softdot.config.idle import take_out_idle
-from softdot.config.toml import parsed, with_value
+from softdot.config.toml import key_path, with_value
 
 BARE_WORD = re.compile(r"[A-Za-z][\w-]*")
 
@@ -36,7 +36,7 @@ def _with_each(
         if not equals:
             raise InputError(f"--set {setting}: must be key=value, such as press.indentation_mm=0.2")
         try:
-            way = parsed(key.strip())
+            way = key_path(key.strip())
             if any(way == earlier[: len(way)] for earlier in given):
                 raise ValueError("this key, or one inside it, is given before; state each once")
             given.append(way)
@@ -48,7 +48,7 @@ def _with_each(
 
 @contextmanager
 def naming_the_flag(settings: Sequence[str]) -> Iterator[None]:
-    """A refusal of a key that --set gave names the flag."""
+    """Make a refusal within the block, of a key that --set gave, name the flag."""
     try:
         yield
     except InputError as error:
@@ -59,6 +59,7 @@ def naming_the_flag(settings: Sequence[str]) -> Iterator[None]:
 
 
 def _value(text: str) -> Any:
+    """A value as TOML writes it, or a bare word. ValueError."""
     try:
         read = tomllib.loads(f"value = {text}\n")
     except (ValueError, RecursionError):

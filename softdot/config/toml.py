@@ -10,8 +10,8 @@ from typing import Any
 from foundation.errors import InputError
 from foundation.files import read_text
 
-DEEPEST = 100
-"""Levels of a dotted key or of brackets: far more than any table of softdot has."""
+MOST_LEVELS = 100
+"""Most levels of a dotted key or of nested brackets: far more than any table of softdot has."""
 
 
 def read_toml(path: Path) -> dict[str, Any]:
@@ -27,8 +27,8 @@ def parse_toml(text: str, name: str) -> dict[str, Any]:
         raise InputError(f"configuration '{name}': brackets are nested too deeply") from None
     except ValueError as error:
         raise InputError(f"configuration '{name}': not valid TOML, {error}") from None
-    if _deeper_than(tables, DEEPEST):
-        raise InputError(f"configuration '{name}': tables are nested more than {DEEPEST} levels deep")
+    if _deeper_than(tables, MOST_LEVELS):
+        raise InputError(f"configuration '{name}': tables are nested more than {MOST_LEVELS} levels deep")
     return tables
 
 
@@ -47,15 +47,15 @@ def _deeper_than(tables: dict[str, Any], levels: int) -> bool:
     return True
 
 
-PART = re.compile(r'(?:(?:^|\.)(?:"([^"]+)"|([^.\[\]"\s]+)))|\[(\d+)\]')
+KEY_PART = re.compile(r'(?:(?:^|\.)(?:"([^"]+)"|([^.\[\]"\s]+)))|\[(\d+)\]')
 
 
-def parsed(key: str) -> tuple[str | int, ...]:
-    """'dot.offset_mm[1]' -> ('dot', 'offset_mm', 1); a name with a dot stands in quotes. ValueError."""
+def key_path(key: str) -> tuple[str | int, ...]:
+    """The path of a key: 'dot.offset_mm[1]' -> ('dot', 'offset_mm', 1); a name with a dot is quoted. ValueError."""
     parts: list[str | int] = []
     end = 0
     while end < len(key):
-        match = PART.match(key, end)
+        match = KEY_PART.match(key, end)
         if match is None or (not parts and match[3]):
             raise ValueError("must be names joined by dots, with [0], [1], … for elements of lists")
         parts.append(int(match[3]) if match[3] else match[1] or match[2])
@@ -66,12 +66,12 @@ def parsed(key: str) -> tuple[str | int, ...]:
 
 
 def with_value(tables: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
-    """A copy of the tables with a value in one place; missing tables on the way are made.
+    """A copy of the tables with one value set; missing tables on the way are made.
 
     InputError when the way leads through something that is no table, or to an element that a list does not have.
     """
     changed = copy.deepcopy(dict(tables))
-    *way, last = parsed(key)
+    *way, last = key_path(key)
     place: Any = changed
     for number, part in enumerate(way):
         _require(place, part, key)
@@ -86,7 +86,7 @@ def with_value(tables: Mapping[str, Any], key: str, value: Any) -> dict[str, Any
 
 
 def _require(place: Any, part: str | int, key: str) -> None:
-    """A name needs a table, a number a list that has so many elements."""
+    """InputError unless a name meets a table, and a number a list that has this element."""
     if isinstance(part, str) and not isinstance(place, dict):
         raise InputError(f"'{key}': the part before '{part}' is not a table in this file")
     if isinstance(part, int) and not isinstance(place, list):

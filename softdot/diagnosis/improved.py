@@ -14,8 +14,8 @@ from diagnose.forward import Engine, Setting
 from diagnose.next_press.press_shape import Shape
 from diagnose.next_press.proposals import base_setup
 from diagnose.verdict.names import model_words
-from diagnose.verdict.resimulation import setting_mechanism
-from softdot.config.rig import OWN, RIG_FILE, Rig
+from diagnose.verdict.resimulation import switched_on
+from softdot.config.rig import RIG_FILE, RIG_KEYS, Rig
 
 WITH = "Your {} with what the recordings say was left out: {}."
 UNCHANGED = "Your {} unchanged: the diagnosis named nothing that was left out."
@@ -40,7 +40,7 @@ def improved_text(rig: Rig, engine: Engine, findings: Findings) -> str | None:
 
 def _segment(rig: Rig, findings: Findings) -> tuple[tomlkit.TOMLDocument, str]:
     document = tomlkit.parse((rig.folder / RIG_FILE).read_text("utf-8-sig"))
-    for key in OWN & document.keys():
+    for key in RIG_KEYS & document.keys():
         document.remove(key)
     deepest = base_setup(rig.recording)
     if "press" not in document and deepest is not None:

@@ -11,7 +11,7 @@ from pydantic import Field, field_validator, model_validator
 from foundation.arrays import Floats
 from foundation.errors import InputError
 from geometry.parameters import Finite, Table
-from softdot.config.toml import parsed
+from softdot.config.toml import key_path
 
 MOST_POINTS = 20_000
 Count = Annotated[int, Field(ge=1, le=MOST_POINTS)]
@@ -33,7 +33,7 @@ class Axis(Table):
     def _readable(cls, given: Any) -> Any:
         for key in [given] if isinstance(given, str) else given or ():
             try:
-                parsed(key)
+                key_path(key)
             except ValueError as error:
                 raise ValueError(str(error) if key == given else f"'{key}' {error}") from None
         return given
@@ -109,7 +109,7 @@ class Sweep(Table):
 
     def _require_apart(self) -> None:
         """No key is set twice, and none lies inside another one."""
-        ways = [(key, parsed(key)) for axis in self.axes for key in axis.names()]
+        ways = [(key, key_path(key)) for axis in self.axes for key in axis.names()]
         for number, (key, way) in enumerate(ways):
             for other, before in ways[:number]:
                 shorter = min(len(way), len(before))

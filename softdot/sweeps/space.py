@@ -10,13 +10,13 @@ from pydantic import ValidationError
 
 from foundation.errors import InputError
 from geometry.parameters import Table
-from softdot.config.default_design import completed
-from softdot.config.errors import sentence, shown
-from softdot.config.idle import stated, take_out_idle
+from softdot.config.default_design import with_default_design
+from softdot.config.errors import sentence, value_text
+from softdot.config.idle import has_value, take_out_idle
 from softdot.config.loading import config_from
 from softdot.config.schema import Config
 from softdot.config.settings import naming_the_flag, with_settings
-from softdot.config.toml import parsed, read_toml, with_value
+from softdot.config.toml import key_path, read_toml, with_value
 from softdot.sweeps.sampling import Axis, Sweep, sampled
 
 
@@ -86,7 +86,7 @@ def _point(base: Mapping[str, Any], sweep: Sweep, row: tuple[Any, ...]) -> Point
     values = {key: row[number] for number, axis in enumerate(sweep.axes) for key in axis.names()}
     tables = _tables(base, sweep, row)
     try:
-        return Point(values, config_from(completed(tables)))
+        return Point(values, config_from(with_default_design(tables)))
     except InputError as error:
         return Point(values, None, str(error))
 
@@ -102,7 +102,7 @@ def _tables(base: Mapping[str, Any], sweep: Sweep, row: tuple[Any, ...]) -> dict
                 raise InputError(f"sweep.axes[{number}]: {error}") from None
     for axis in sweep.axes:
         for key in axis.names():
-            take_out_idle(tables, parsed(key))
+            take_out_idle(tables, key_path(key))
     return tables
 
 
@@ -116,7 +116,9 @@ def _refuse_bad_axes(
         (*good[0][:n], value, *good[0][n + 1 :]) for n, axis in enumerate(sweep.axes) for _, value in _extremes(axis)
     ]
     for number, axis in enumerate(sweep.axes):
-        acting = (stated(_tables(base, sweep, row), parsed(key)) for row in (*good, *beside) for key in axis.names())
+        acting = (
+            has_value(_tables(base, sweep, row), key_path(key)) for row in (*good, *beside) for key in axis.names()
+        )
         if not any(acting):  # by chance few random points may have none of the values beside which it acts
             raise InputError(f"sweep.axes[{number}]: {axis.names()[0]} acts beside no value of another axis")
         for name, value in _extremes(axis):
@@ -124,7 +126,7 @@ def _refuse_bad_axes(
                 continue
             tried = [_point(base, sweep, (*row[:number], value, *row[number + 1 :])) for row in good]
             if all(point.config is None for point in tried):
-                raise InputError(f"sweep.axes[{number}].{name} = {shown(value)}: {tried[0].reason}")
+                raise InputError(f"sweep.axes[{number}].{name} = {value_text(value)}: {tried[0].reason}")
 
 
 def _extremes(axis: Axis) -> Iterator[tuple[str, Any]]:

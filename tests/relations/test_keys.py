@@ -13,7 +13,7 @@ from foundation.nearest_name import nearest_name_hint
 from geometry.parameters import Dot, Effector, Segment
 from mesh.options import MeshOptions
 from softdot import Case
-from softdot.config.default_design import completed
+from softdot.config.default_design import with_default_design
 from softdot.config.errors import tables_at
 from softdot.config.loading import config_from
 from softdot.config.mistakes import mistakes
@@ -91,7 +91,7 @@ def test_a_key_that_does_not_act_is_refused_by_name_and_said_once(way, name, tab
     key = ".".join([*way, name])
 
     def check(found):
-        return config_from(completed(found))
+        return config_from(with_default_design(found))
 
     with pytest.raises(InputError) as refused:
         check(tables)
@@ -108,7 +108,9 @@ def test_where_it_acts_nothing_is_said_of_it_and_what_is_written_can_be_read(way
     needed = {one: example(one, properties[one]) for one, acts in keys
               if acts.needed and all(table.get(tag) in wanted for tag, wanted in acts.tags.items())}  # fmt: skip
     try:
-        written = config_from(completed(put(way, {**needed, **table}))).model_dump(mode="json", exclude_none=True)
+        written = config_from(with_default_design(put(way, {**needed, **table}))).model_dump(
+            mode="json", exclude_none=True
+        )
     except InputError as error:
         assert not str(error).startswith(".".join([*way, name]))  # noqa: PT017 - another key of a table made at random
     else:
@@ -267,7 +269,7 @@ def test_a_slide_is_looked_at_on_its_whole_way():
 def test_the_schema_refuses_the_same_keys():
     jsonschema = pytest.importorskip("jsonschema")
     validator = jsonschema.Draft202012Validator(SCHEMA)
-    base = config_from(completed({})).model_dump(mode="json", exclude_none=True)
+    base = config_from(with_default_design({})).model_dump(mode="json", exclude_none=True)
     assert validator.is_valid(base)
     for way, name, table, holds in CONDITIONS:
         stated = copy.deepcopy(base)
@@ -320,7 +322,7 @@ def test_a_hint_is_by_words_and_letters(typed, meant):
 def test_mistakes_keep_the_indices_of_the_file():
     wrong = [{"name": "friction", "component": place, "parameters": {"coefficient": 0.1}} for place in "abc"]
     right = {"name": "friction", "component": "dot", "parameters": {"coefficient": -1.0}}
-    found, _ = mistakes({"mechanisms": [*wrong, right]}, lambda tables: config_from(completed(tables)))
+    found, _ = mistakes({"mechanisms": [*wrong, right]}, lambda tables: config_from(with_default_design(tables)))
     assert [one.split(" ")[0] for one in found] == [
         *(f"mechanisms[{n}].component" for n in range(3)),
         "mechanisms[3].parameters.coefficient",
@@ -345,7 +347,7 @@ FOLLOWS = {
 
 @for_each("tables", FOLLOWS.values(), ids=FOLLOWS)
 def test_what_follows_from_a_mistake_is_no_second_one(tables):
-    found, _ = mistakes(tables, lambda rest: Case(config_from(completed(rest))).checked)
+    found, _ = mistakes(tables, lambda rest: Case(config_from(with_default_design(rest))).checked)
     assert len(found) == 1
 
 

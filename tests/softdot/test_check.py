@@ -10,7 +10,7 @@ from foundation.errors import InputError
 from softdot.case import Case
 from softdot.checks import cost_of, expected_tetrahedra
 from softdot.cli import main
-from softdot.config.default_design import completed
+from softdot.config.default_design import with_default_design
 from softdot.config.loading import config_from
 from softdot.config.mistakes import mistakes
 from tests.softdot.random_mistakes import invalid_configurations
@@ -80,7 +80,7 @@ def test_a_random_mistake_is_among_those_told(example):
 
 
 def _check(tables):
-    return Case(config_from(completed(tables))).checked
+    return Case(config_from(with_default_design(tables))).checked
 
 
 def test_a_good_file_is_told_its_mesh_time_and_memory(checked, monkeypatch):

@@ -16,7 +16,7 @@ import solve.materials.parameters
 import solve.mechanisms
 import solve.model
 from softdot.commands.new import config_schema
-from softdot.config.default_design import completed
+from softdot.config.default_design import with_default_design
 from softdot.config.loading import config_from
 from softdot.config.model import model_of
 from softdot.config.schema import Config
@@ -90,11 +90,11 @@ def toml_blocks():
 
 
 def test_every_whole_file_that_is_shown_is_accepted():
-    assert [config_from(completed(tomllib.loads(block))) for block in toml_blocks()] != []
+    assert [config_from(with_default_design(tomllib.loads(block))) for block in toml_blocks()] != []
 
 
 def test_every_key_of_the_summary_is_explained():
-    config = config_from(completed(tomllib.loads(toml_blocks()[0])))
+    config = config_from(with_default_design(tomllib.loads(toml_blocks()[0])))
     history = result_of([0.0, 0.15, 0.3])
     model = model_of(config)
     along = course(history, model.press, model.amplifier, model.physics)

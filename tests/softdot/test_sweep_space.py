@@ -11,7 +11,7 @@ import pytest
 
 from foundation.errors import InputError
 from softdot.cli import main
-from softdot.config.toml import parsed, with_value
+from softdot.config.toml import key_path, with_value
 from softdot.sweeps.space import load_space, space_from
 from softdot.warm_up import TINY
 from tests.cases import for_each
@@ -249,13 +249,13 @@ def test_sobol_points_fill_every_cell_of_a_grid_once():
     }.items(),
 )
 def test_dotted_keys(key, way):
-    assert parsed(key) == way
+    assert key_path(key) == way
 
 
 @for_each("key", ["", ".", "a.", "a..b", "[0]", "a[x]", "a[-1]", 'a."b', "a b"])
 def test_what_is_no_dotted_key(key):
     with pytest.raises(ValueError, match="must"):
-        parsed(key)
+        key_path(key)
 
 
 def test_setting_a_value_leaves_the_tables_as_they_were():

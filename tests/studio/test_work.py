@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from softdot import Case, load_config
-from softdot.config.default_design import completed
+from softdot.config.default_design import with_default_design
 from softdot.config.loading import config_from
 from softdot.config.toml import parse_toml
 from softdot.studio.comparison import compared, differences
@@ -94,7 +94,7 @@ def test_a_film_beyond_its_yield_stress_is_let_yield():
 def test_the_coarse_press_is_some_percent_off():
     told = []
     coarse = press.coarse_press(QUICK, told.append)["numbers"]
-    fine = Case(config_from(completed(parse_toml(QUICK, "quick")))).press()
+    fine = Case(config_from(with_default_design(parse_toml(QUICK, "quick")))).press()
     assert coarse["open_circuit_voltage_V"][-1] == pytest.approx(fine.open_circuit_voltage_V[-1], rel=0.06)
     assert coarse["reaction_force_N"][-1] == pytest.approx(fine.reaction_force_N[-1], rel=0.06)
     assert [one["progress"]["done"] for one in told if one["progress"]["stage"] == "press"] == [0, 1, 2, 3]

@@ -1,7 +1,7 @@
 """Coarse arrays for verification: the paper's final design on segments of 2.3 mm at the pitch of 2.5 mm."""
 
 from softdot.arrays.case import ArrayCase
-from softdot.config.default_design import completed
+from softdot.config.default_design import with_default_design
 from softdot.config.loading import config_from
 from solve.press import press_segment
 
@@ -17,7 +17,7 @@ def array(columns=2, rows=1, segment=None, press=None, mesh=None, tables=None, *
         "mesh": {**COARSE, **(mesh or {})},
         **(tables or {}),
     }
-    return ArrayCase(config_from(completed(stated)))
+    return ArrayCase(config_from(with_default_design(stated)))
 
 
 def solved(press, mesh=None):

@@ -17,7 +17,7 @@ from mesh.types import TET_FACES, boundary_faces
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.matrix import crosstalk
 from softdot.arrays.presses import ArrayPresses
-from softdot.config.default_design import completed
+from softdot.config.default_design import with_default_design
 from softdot.config.loading import config_from
 from tests.verification.row import agrees
 
@@ -72,7 +72,7 @@ def by_ngsolve(press, electrodes, path):
 def test_matrix_of_two_segments(tmp_path, monkeypatch):
     """Every entry within 2 %, the force within 1 %."""
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
-    case = ArrayCase(config_from(completed(TABLES)))
+    case = ArrayCase(config_from(with_default_design(TABLES)))
     matrix = crosstalk(case, ArrayPresses())
     electrodes = np.array(case.layout.edges(0))
     force_N, voltages_V = by_ngsolve(case.press_over(case.layout.places[0]), electrodes, tmp_path / "case.npz")

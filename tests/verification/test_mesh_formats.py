@@ -15,7 +15,7 @@ from mesh.files.formats import write_mesh
 from mesh.jacobian import volumes
 from mesh.options import MeshOptions
 from softdot.case import Case
-from softdot.config.default_design import completed
+from softdot.config.default_design import with_default_design
 from softdot.config.loading import config_from
 from softdot.outcome import solved
 from softdot.verify.body import ElasticBody
@@ -136,9 +136,9 @@ SOLID = {"press": {"indentation_mm": 0.1, "load_steps": 1}, "mesh": {**SLICE["me
 )
 def test_a_press_on_its_own_exported_mesh_gives_the_same_numbers(name, tables, extension, tmp_path):
     """Only the order of nodes and elements differs, and in .inp the fifteenth digit of the coordinates."""
-    config = config_from(completed(tables))
+    config = config_from(with_default_design(tables))
     (path,) = write_mesh(Case(config).mesh, [extension], tmp_path)
-    own = config_from(completed({**tables, "mesh": {"file": str(path)}}))
+    own = config_from(with_default_design({**tables, "mesh": {"file": str(path)}}))
     before, after = (solved(one, lambda *_: None) for one in (config, own))
     solved_as = 2 ** len(before["mesh"]["symmetry_planes"])
     assert after["mesh"]["tetrahedra"] == solved_as * before["mesh"]["tetrahedra"]

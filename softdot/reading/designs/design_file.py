@@ -13,13 +13,13 @@ from pydantic import Field, ValidationError, model_validator
 from foundation.errors import InputError
 from geometry.parameters import Table
 from softdot.arrays.case import ArrayCase
-from softdot.config.default_design import completed
+from softdot.config.default_design import with_default_design
 from softdot.config.errors import sentence
 from softdot.config.idle import take_out_idle
 from softdot.config.loading import config_from
 from softdot.config.schema import Config
 from softdot.config.settings import naming_the_flag, with_settings
-from softdot.config.toml import parsed, read_toml, with_value
+from softdot.config.toml import key_path, read_toml, with_value
 from softdot.sweeps.space import Space, space_from
 
 
@@ -100,7 +100,7 @@ def tried(base: Mapping[str, Any], name: str, values: Mapping[str, Any]) -> Trie
     """
     tables = tables_of(base, values)
     try:
-        return TriedDesign(name, values, config_from(completed(tables)))
+        return TriedDesign(name, values, config_from(with_default_design(tables)))
     except InputError as error:
         return TriedDesign(name, values, None, str(error))
 
@@ -114,7 +114,7 @@ def tables_of(base: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, A
     for key, value in values.items():
         tables = with_value(tables, key, value)
     for key in values:
-        take_out_idle(tables, parsed(key))
+        take_out_idle(tables, key_path(key))
     return tables
 
 

@@ -13,7 +13,7 @@ from geometry.dot import DotShape
 from geometry.dot_at_rest import resolve_dot
 from softdot.arrays.case import ArrayCase
 from softdot.case import Case
-from softdot.config.default_design import completed
+from softdot.config.default_design import with_default_design
 from softdot.config.hashes import input_hash
 from softdot.config.loading import config_from
 from softdot.config.mistakes import mistakes
@@ -33,7 +33,7 @@ def config_of(text: str) -> Config:
 
 
 def _config(tables: Mapping[str, Any]) -> Config:
-    config = config_from(completed(tables))
+    config = config_from(with_default_design(tables))
     refuse_files_outside(config)
     return config
 
@@ -164,7 +164,7 @@ def examine(text: str) -> dict[str, Any]:
 
     found, checked = mistakes(tables, check)
     if checked is None:
-        whole, stated = plain({"values": completed(tables), "stated": tables}).values()
+        whole, stated = plain({"values": with_default_design(tables), "stated": tables}).values()
         tried = remedies(tables, found, lambda changed: check(changed)[2])
         return {"values": whole, "stated": stated, "mistakes": found, "warnings": [], "remedies": tried}
     config, design, warnings = checked

@@ -6,9 +6,9 @@ from contextlib import suppress
 from typing import Any
 
 from foundation.errors import InputError
-from softdot.config.default_design import completed
+from softdot.config.default_design import with_default_design
 from softdot.config.schema import Config
-from softdot.config.toml import parsed, with_value
+from softdot.config.toml import key_path, with_value
 from solve.mechanisms.layers.film_yield import FILM_YIELD
 
 KEY = r"([\w\-.\[\]\"]+)"
@@ -96,7 +96,7 @@ def _written(key: Sequence[str | int]) -> str:
 def _candidates(tables: Mapping[str, Any], sentence: str) -> Iterator[tuple[str, list[list[Any]]]]:
     """Changes that might mend a sentence, the smallest first."""
     yield from _of_the_key(tables, sentence)
-    whole = completed(tables)
+    whole = with_default_design(tables)
     press = whole.get("press", {})
     depth = press.get("indentation_mm", 0.3) if isinstance(press, dict) else None
     if "indentation" in sentence and isinstance(depth, int | float) and "force_N" not in press:
@@ -117,7 +117,7 @@ def _of_the_key(tables: Mapping[str, Any], sentence: str) -> Iterator[tuple[str,
     """A key beyond its bound, or one that is no key."""
     bound, meant = BOUND.match(sentence), MEANT.match(sentence)
     if bound is not None:
-        key, word, limit = list(parsed(bound[1])), bound[2], float(bound[3].rstrip("."))
+        key, word, limit = list(key_path(bound[1])), bound[2], float(bound[3].rstrip("."))
         inside = {"at least": limit, "at most": limit}.get(word, limit * (1 + JUST_INSIDE))
         if word in ("below", "less than"):
             inside = limit * (1 - JUST_INSIDE)
@@ -126,21 +126,21 @@ def _of_the_key(tables: Mapping[str, Any], sentence: str) -> Iterator[tuple[str,
         allowed = int(inside) if inside == int(inside) and word.startswith("at ") else inside
         yield f"set {bound[1]} to {allowed:g}", [[key, allowed]]
     if meant is not None:
-        wrong = list(parsed(meant[1]))
-        right = list(parsed(meant[2])) if "." in meant[2] else [*wrong[:-1], meant[2]]
+        wrong = list(key_path(meant[1]))
+        right = list(key_path(meant[2])) if "." in meant[2] else [*wrong[:-1], meant[2]]
         value: Any = tables
         for part in wrong:
             value = value[part]
         yield f"call it {meant[2]}", [[wrong, None], [right, value]]
-    segment, missing = completed(tables).get("segment", {}), MISSING.match(sentence)
+    segment, missing = with_default_design(tables).get("segment", {}), MISSING.match(sentence)
     if missing is not None and isinstance(segment, dict):
         sides = [side for name in ("length_mm", "width_mm") if isinstance(side := segment.get(name), int | float)]
         size = float(f"{OF_THE_SEGMENT * min(sides, default=1.0):.2g}")
-        yield f"set {missing[1]} to {size:g}", [[list(parsed(missing[1])), size]]
+        yield f"set {missing[1]} to {size:g}", [[list(key_path(missing[1])), size]]
     gap = GAP.match(sentence)
     if gap is not None:
         size = float(f"{(1 - GAP_SHARE) * float(gap[2]):.3g}")
-        yield f"set {gap[1]} to {size:g}", [[list(parsed(gap[1])), size]]
+        yield f"set {gap[1]} to {size:g}", [[list(key_path(gap[1])), size]]
     first = sentence.split(" ", 1)[0]
     if (":" in sentence or "is not a key" in sentence) and re.fullmatch(KEY, first):
-        yield f"take {first} out", [[list(parsed(first)), None]]
+        yield f"take {first} out", [[list(key_path(first)), None]]

@@ -7,7 +7,7 @@ import numpy as np
 
 from softdot.arrays.case import ArrayCase
 from softdot.case import Case
-from softdot.config.default_design import completed
+from softdot.config.default_design import with_default_design
 from softdot.config.loading import config_from
 from softdot.verify.problem import Problem
 
@@ -55,7 +55,7 @@ def _pair(tables: dict[str, Any]) -> ArrayCase:
         "mesh": {"element_size_mm": 0.6, "contact_element_size_mm": 0.2},
         **tables,
     }
-    return ArrayCase(config_from(completed(stated)))
+    return ArrayCase(config_from(with_default_design(stated)))
 
 
 @cache
