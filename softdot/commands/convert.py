@@ -11,7 +11,7 @@ from softdot.config.rig import load_rig
 from softdot.config.toml import parse_toml
 from softdot.console import GOOD
 from softdot.convert.files import read_log
-from softdot.convert.join import NamedLog, joined
+from softdot.convert.join import NamedLog, join_logs
 from softdot.convert.recording import write_recording
 from softdot.log import warn
 
@@ -21,11 +21,11 @@ def command(chosen: Namespace) -> int:
     rig = read_text(Path(chosen.rig), f"--rig '{chosen.rig}'")
     file = _only_run(rig, chosen.rig)
     logs = [NamedLog(Path(name), read_log(name)) for name in chosen.logs]
-    run = joined(logs, _named(chosen.column), [_seconds(text) for text in chosen.offset], chosen.align)
+    run = join_logs(logs, _named(chosen.column), [_seconds(text) for text in chosen.offset], chosen.align)
     write_recording(chosen.output, rig, {file: run.columns})
     warn([*run.warnings, *load_rig(chosen.output).recording.warnings])
     if not chosen.quiet:
-        print("\n".join([*run.said, f"{len(run.columns['time_s'])} samples in {Path(chosen.output) / file}"]))
+        print("\n".join([*run.remarks, f"{len(run.columns['time_s'])} samples in {Path(chosen.output) / file}"]))
     return GOOD
 
 

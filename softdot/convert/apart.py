@@ -1,4 +1,4 @@
-"""Binary files are read in a process of its own, since what is wrong in them may take the interpreter with it.
+"""Binary files are read in a process of their own, since a damaged one may crash the interpreter.
 
 Started as a module with four arguments: the reader, the file, a folder and the process number of its parent. The folder
 holds asked.json, what the reader is asked; it leaves read.npz there, or refused.txt with one sentence.
@@ -21,17 +21,19 @@ from foundation.errors import InputError
 from foundation.files import regular_file_size
 from foundation.nearest_name import nearest_name_hint
 from foundation.scratch_folders import scratch_folder
-from softdot.convert.text_table import decoded
+from softdot.convert.text_table import file_text
 from softdot.convert.units import known_unit
 
-LONGEST_S = 600.0
-HDF5 = 2
-"""Major version of files that MATLAB calls 7.3: an HDF5 library more would save their user one save(..., '-v7')."""
+LONGEST_READ_S = 600.0
+HDF5_MAJOR_VERSION = 2
+"""Major version of the .mat files that MATLAB calls 7.3. They are refused: save(..., '-v7') spares an HDF5 library."""
 Arrays = dict[str, Any]
 
 
-def read_apart(reader: str, file: Path, asked: Mapping[str, str] | None = None) -> Arrays:
-    """The arrays that a reader of READERS makes of a file. InputError, also where its process dies or is slow."""
+def read_in_own_process(reader: str, file: Path, asked: Mapping[str, str] | None = None) -> Arrays:
+    """The arrays that a reader of READERS makes of a file. InputError, also where its process dies or takes
+    LONGEST_READ_S.
+    """
     regular_file_size(file, f"'{file}'")
     with scratch_folder() as folder:
         (folder / "asked.json").write_text(json.dumps(dict(asked or {})), "utf-8")
@@ -42,12 +44,12 @@ def read_apart(reader: str, file: Path, asked: Mapping[str, str] | None = None) 
                 env={**os.environ, **child_python_path()},
                 stdin=subprocess.DEVNULL,
                 capture_output=True,
-                timeout=LONGEST_S,
+                timeout=LONGEST_READ_S,
                 start_new_session=True,
                 check=False,
             )
         except subprocess.TimeoutExpired:
-            raise InputError(f"'{file}': is not read within {LONGEST_S:g} s") from None
+            raise InputError(f"'{file}': is not read within {LONGEST_READ_S:g} s") from None
         if (folder / "refused.txt").exists():
             raise InputError((folder / "refused.txt").read_text("utf-8"))
         if done.returncode != 0 or not (folder / "read.npz").exists():
@@ -57,7 +59,7 @@ def read_apart(reader: str, file: Path, asked: Mapping[str, str] | None = None) 
 
 
 def main(reader: str, file: Path, folder: Path) -> None:
-    """Read and leave what was read, or why not."""
+    """Read a file and leave in the folder what was read, or a sentence on why it could not be."""
     asked = json.loads((folder / "asked.json").read_text("utf-8"))
     try:
         found = READERS[reader](file, asked)
@@ -75,19 +77,19 @@ def main(reader: str, file: Path, folder: Path) -> None:
 
 
 def matlab_columns(file: Path, asked: Mapping[str, str]) -> Arrays:
-    """Column -> values (t,). asked : column -> variable, 'name.field' for a field of a structure. InputError."""
+    """Columns (t,) of a .mat file. asked : column -> variable, 'name.field' for a field of a structure. InputError."""
     from scipy.io import loadmat
     from scipy.io.matlab import matfile_version
 
     version, _ = matfile_version(file, appendmat=False)
-    if version == HDF5:
+    if version == HDF5_MAJOR_VERSION:
         raise InputError(f"'{file}': is a version 7.3 file; save it again in MATLAB with save(..., '-v7')")
     tables = loadmat(file, squeeze_me=True, simplify_cells=True, appendmat=False)
     return {column: _vector(tables, path, file) for column, path in asked.items()}
 
 
 def _vector(tables: Mapping[str, object], path: str, file: Path) -> Floats:
-    """One real variable as (t,)."""
+    """One real variable of a .mat file as (t,). InputError."""
     value: object = tables
     for name in path.split("."):
         known = {key for key in value if not key.startswith("__")} if isinstance(value, Mapping) else set()
@@ -101,7 +103,7 @@ def _vector(tables: Mapping[str, object], path: str, file: Path) -> Floats:
 
 
 def tdms_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
-    """LabVIEW's .tdms, by npTDMS: all channels, which must be sampled at the same times."""
+    """The log in a .tdms file of LabVIEW, by npTDMS. InputError for channels that are not sampled at the same times."""
     from nptdms import TdmsFile  # type: ignore[import-not-found, unused-ignore]
 
     with TdmsFile.open(file) as opened:
@@ -116,7 +118,7 @@ def tdms_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
         units = [str(channel.properties.get("unit_string", channel.properties.get("NI_UnitDescription", "")))
                  for channel in timed]  # fmt: skip
         values = [np.asarray(channel[:], dtype=np.float64) for channel in timed]
-        return _logged(file, times, [channel.name for channel in timed], units, values)
+        return _log_arrays(file, times, [channel.name for channel in timed], units, values)
 
 
 def _seconds_between(first: Any, other: Any) -> float:
@@ -138,10 +140,12 @@ def _second(unit: str, file: Path) -> float:
 
 
 def lvm_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
-    """LabVIEW's .lvm, by lvm_read, which is given the text: a pickle beside the file is not read."""
+    """The log in an .lvm file of LabVIEW, by lvm_read, which is given the text and so reads no pickle beside it.
+    InputError.
+    """
     import lvm_read  # type: ignore[import-not-found, unused-ignore]
 
-    found = lvm_read.read_str(decoded(file))
+    found = lvm_read.read_str(file_text(file))
     if found["Segments"] != 1:
         raise InputError(f"'{file}': holds {found['Segments']} segments one after the other; save each in its own file")
     if found.get("X_Columns", "One") == "Multi":
@@ -166,23 +170,27 @@ def lvm_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
         raise InputError(f"'{file}': its times are in several units; save its channels apart")
     times = [scales.copy().pop() * time for time in times]
     units = [text.strip() for text in segment.get("Y_Unit_Label", [""] * count)]
-    return _logged(file, times[:count], names[:count], units[:count], list(values.T[:count]))
+    return _log_arrays(file, times[:count], names[:count], units[:count], list(values.T[:count]))
 
 
 def waveform_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
-    """Binary waveforms of Rigol, Tektronix, LeCroy, Keysight, Siglent, Rohde & Schwarz and Yokogawa, by RigolWFM."""
+    """The log in a binary file of Rigol, Tektronix, LeCroy, Keysight, Siglent, Rohde & Schwarz or Yokogawa, by
+    RigolWFM.
+    """
     from RigolWFM.wfm import Wfm  # type: ignore[import-not-found, unused-ignore]
 
     shown = [channel for channel in Wfm.from_file(str(file)).channels if channel.volts is not None]
     units = [{"v": "V", "a": "A", "w": "W"}.get(channel.unit.name, "of its own") for channel in shown]
     names = [re.sub(r"\s+", "", channel.name) for channel in shown]
-    return _logged(file, [channel.times for channel in shown], names, units, [channel.volts for channel in shown])
+    return _log_arrays(file, [channel.times for channel in shown], names, units, [channel.volts for channel in shown])
 
 
-def _logged(
+def _log_arrays(
     file: Path, times: Sequence[Floats], names: Sequence[str], units: Sequence[str], values: Sequence[Floats]
 ) -> Arrays:
-    """time_s (t,), names and units (n,), values (n, t). InputError for channels that were sampled at other times."""
+    """The arrays of a log: time_s (t,), names, units (n,) and values (n, t). InputError for channels with other
+    times.
+    """
     if not times or len({len(names), len(units), len(values), len(times)}) != 1:
         raise InputError(f"'{file}': holds no channel, or channels without name or unit")
     for name, time, column in zip(names, times, values, strict=True):

@@ -9,47 +9,45 @@ import numpy as np
 from foundation.arrays import Floats
 from foundation.errors import InputError
 from foundation.files import regular_file_size
-from softdot.convert.apart import read_apart
-from softdot.convert.instruments import InstrumentLog, LogChannel, log_of, read_text_log, rising
+from softdot.convert.apart import read_in_own_process
+from softdot.convert.instruments import InstrumentLog, LogChannel, first_not_rising, log_from_table, read_text_log
 from softdot.convert.text_table import TextTable
-from softdot.convert.units import unit_of, usual_unit
+from softdot.convert.units import assumed_unit, unit_of
 
-TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".prn")
-WAVEFORMS = (".wfm", ".isf", ".trc", ".bin", ".wvf")
+TEXT_ENDINGS = (".csv", ".txt", ".tsv", ".dat", ".asc", ".prn")
+WAVEFORM_ENDINGS = (".wfm", ".isf", ".trc", ".bin", ".wvf")
 
 
 def read_log(file: Path | str) -> InstrumentLog:
-    """What an instrument recorded, by the ending of its file. InputError."""
+    """Read the log of an instrument, in the format that its ending names. InputError."""
     file = Path(file)
     kind = file.suffix.lower()
-    if kind in TEXT:
+    if kind in TEXT_ENDINGS:
         return read_text_log(file)
     if kind == ".xlsx":
-        return log_of(TextTable(_cells(file, 0, 0), ".", file))
+        return log_from_table(TextTable(_cell_texts(file, 0, 0), ".", file))
     if kind in (".tdms", ".lvm"):
         return _binary_log(file, kind)
-    if kind in WAVEFORMS:
+    if kind in WAVEFORM_ENDINGS:
         return _binary_log(file, "waveform")
     if kind == ".mat":
         raise InputError(
             f"'{file}': a .mat file does not say which variable is what; read it by softdot.convert.read_mat"
         )
-    raise InputError(
-        f"'{file}': must end with one of {', '.join((*TEXT, '.xlsx', '.tdms', '.lvm', *WAVEFORMS))}; text with other "
-        "endings may be renamed"
-    )
+    known = ", ".join((*TEXT_ENDINGS, ".xlsx", ".tdms", ".lvm", *WAVEFORM_ENDINGS))
+    raise InputError(f"'{file}': must end with one of {known}; text with other endings may be renamed")
 
 
 def _binary_log(file: Path, kind: str) -> InstrumentLog:
-    found = read_apart(kind, file)
+    found = read_in_own_process(kind, file)
     channels: dict[str, LogChannel] = {}
     for name, text, values in zip(found["names"].tolist(), found["units"].tolist(), found["values"], strict=True):
         if name in channels:
             raise InputError(f"'{file}': two channels are called '{name}'; give each its own name")
-        unit = unit_of(text, name, f"'{file}'") if text else usual_unit(name, f"'{file}'")
+        unit = unit_of(text, name, f"'{file}'") if text else assumed_unit(name, f"'{file}'")
         channels[name] = LogChannel(unit.factor * np.asarray(values, dtype=np.float64), unit.base)
     time = np.asarray(found["time_s"], dtype=np.float64)
-    if (row := rising(time)) is not None:
+    if (row := first_not_rising(time)) is not None:
         raise InputError(f"'{file}': time must rise, and does not at sample {row + 1}")
     return InstrumentLog(time, channels)
 
@@ -64,23 +62,23 @@ def read_mat(
     """
     if unknown := (factors or {}).keys() - variables.keys():
         raise InputError(f"factors: '{min(unknown)}' is none of the columns {', '.join(variables)}")
-    found = read_apart(".mat", Path(file), variables)
+    found = read_in_own_process(".mat", Path(file), variables)
     return {column: (factors or {}).get(column, 1.0) * found[column] for column in variables}
 
 
 def read_sheet(file: Path | str, first_row: int = 0, sheet: int = 0) -> Floats:
     """Cells (r, c) of one sheet from a row on; NaN for what is no number. InputError; needs openpyxl."""
-    return np.array([[_number(cell) for cell in row] for row in _sheet(Path(file), first_row, sheet)])
+    return np.array([[_number(cell) for cell in row] for row in _sheet_rows(Path(file), first_row, sheet)])
 
 
-def _cells(file: Path, first_row: int, sheet: int) -> list[list[str]]:
-    """The same as text, numbers with points."""
-    rows = _sheet(file, first_row, sheet)
+def _cell_texts(file: Path, first_row: int, sheet: int) -> list[list[str]]:
+    """Cells of a sheet as text, numbers with decimal points."""
+    rows = _sheet_rows(file, first_row, sheet)
     return [["" if cell is None else " ".join(str(cell).split()) for cell in row] for row in rows]
 
 
-def _sheet(file: Path, first_row: int, sheet: int) -> list[list[object]]:
-    """Rows of one length."""
+def _sheet_rows(file: Path, first_row: int, sheet: int) -> list[list[object]]:
+    """Rows of a sheet, all of one length. InputError."""
     regular_file_size(file, f"'{file}'")
     try:
         from openpyxl import load_workbook  # type: ignore[import-untyped]

@@ -18,37 +18,37 @@ import numpy as np
 
 from foundation.arrays import Floats
 from foundation.errors import InputError
-from softdot.convert.settings import Settings, bare, settings_above
-from softdot.convert.text_table import NO_NUMBER, TextTable, read_text_table
-from softdot.convert.units import Unit, known_unit, split_name, unit_of, usual_unit
+from softdot.convert.settings import Settings, settings_above, without_brackets
+from softdot.convert.text_table import MISSING_SAMPLE, TextTable, read_text_table
+from softdot.convert.units import Unit, assumed_unit, known_unit, split_name, unit_of
 
 HEADER_ROWS = 200
-TIME = re.compile(
+TIME_NAME = re.compile(
     r"#?(?:(?:elapsed|test|running|total|run|rel(?:ative)?|abs(?:olute)?)[ _]*)?"
     r"(?:\w*time|\w*zeit|temps|tiempo|elapsed|t|s|x|x[- ]?axis|seconds?|secs?|millis|micros|in|time[ _]?stamp)"
     r"(?:[ _]*(?:elapsed|axis|base))?",
     re.IGNORECASE,
 )
-INDEX = re.compile(r"#|nr|no\.?|n|index|idx|sample|samples|point|points|row|scan|segment", re.IGNORECASE)
-"""Columns that count samples."""
+COUNTER_NAME = re.compile(r"#|nr|no\.?|n|index|idx|sample|samples|point|points|row|scan|segment", re.IGNORECASE)
+"""Names of columns that count samples."""
 CLOCK = re.compile(r"\d+[:./-]\d+[:./-]\d+")
 """2026-11-29T10:00:00, 29.11.2026, 10:00:00."""
-DIGITAL = re.compile(r"D\d+(?:-D\d+)?", re.IGNORECASE)
-"""Logic channels, whose cells are words of bits."""
+DIGITAL_NAME = re.compile(r"D\d+(?:-D\d+)?", re.IGNORECASE)
+"""Names of logic channels, whose cells are words of bits."""
 START_STEP = re.compile(r"(?:t0|tInc)\s*=", re.IGNORECASE)
 """What Rigol writes behind the names of columns, t0 = -0.03."""
-NAMELESS = {"value", "volt", "volts", "ampl", "amplitude"}
-"""Names of a channel that says its own in the settings, as source."""
-LONGEST_S = 1e10
-"""Three centuries: what is later counts no seconds."""
+GENERIC_NAMES = {"value", "volt", "volts", "ampl", "amplitude"}
+"""Names of a column whose channel is named in the settings, as source."""
+LATEST_TIME_S = 1e10
+"""Three centuries: a later time is not in seconds."""
 DAYS, DAY_STEP = (2e4, 8e4), 1e-4
 """Days of a spreadsheet from 1954 to 2119, whose samples are less than nine seconds apart."""
-OTHER_STEP = 0.1  # relative, of the times and of what the settings say
+STEP_TOLERANCE = 0.1  # relative, of the times and of what the settings say
 
 
 @dataclass(frozen=True)
 class LogChannel:
-    """values (t,) in the unit: V, N, mm or C; NaN where none was measured."""
+    """Samples of one channel: values (t,) in the unit V, N, mm or C; NaN where none was measured."""
 
     values: Floats
     unit: str
@@ -56,7 +56,9 @@ class LogChannel:
 
 @dataclass(frozen=True)
 class InstrumentLog:
-    """time_s (t,) rises; channels : by the names of the instrument."""
+    """The log of one instrument: times that rise, time_s (t,), and channels by the names that the instrument gives
+    them.
+    """
 
     time_s: Floats
     channels: Mapping[str, LogChannel]
@@ -64,18 +66,20 @@ class InstrumentLog:
 
 @dataclass(frozen=True)
 class TimeColumn:
-    """Its place, factor and offset to seconds. told : whether the file says its unit, else seconds are assumed."""
+    """The column of the times, with factor and offset to seconds; has_unit : whether the file states the unit."""
 
     column: int
     factor: float
     offset: float
-    told: bool
+    has_unit: bool
 
 
 @dataclass(frozen=True)
 class Layout:
-    """header : row of the names, None where settings say them. first : row of the first sample. channels : name ->
-    column and unit.
+    """Rows and columns of a text file.
+
+    header : row of the names, None where settings give them. first : row of the first sample. channels : name -> column
+    and unit.
     """
 
     header: int | None
@@ -96,22 +100,22 @@ def read_oscilloscope(file: Path | str) -> dict[str, Floats]:
 
 
 def read_text_log(file: Path | str) -> InstrumentLog:
-    """The same with the unit of each channel. InputError."""
-    return log_of(read_text_table(Path(file)))
+    """Read a text file of an instrument, with the unit of each channel. InputError."""
+    return log_from_table(read_text_table(Path(file)))
 
 
-def log_of(table: TextTable) -> InstrumentLog:
-    """What a table of text holds. InputError."""
-    layout = _layout(table)
+def log_from_table(table: TextTable) -> InstrumentLog:
+    """The log that a table of text holds. InputError."""
+    layout = _find_layout(table)
     rows = [row for row in range(layout.first, len(table.rows)) if any(table.rows[row])]
     _refuse_wide(table, rows, layout)
     _refuse_nameless(table, rows, layout)
     column = layout.time.column
     time = layout.time.offset + layout.time.factor * table.column(rows, column)
-    if (late := rising(time)) is not None:
+    if (late := first_not_rising(time)) is not None:
         where = f"{table.place(rows[late])}, column {column + 1}"
         raise InputError(f"{where} = '{table.cell(rows[late], column)[:40]}': every sample needs its time, which rises")
-    if not layout.time.told:
+    if not layout.time.has_unit:
         _refuse_no_seconds(time, layout, table)
     channels = {
         name: LogChannel(unit.factor * table.column(rows, place), unit.base)
@@ -120,14 +124,14 @@ def log_of(table: TextTable) -> InstrumentLog:
     return InstrumentLog(time, channels)
 
 
-def rising(time_s: Floats) -> int | None:
-    """The first sample (t,) without a time that is later than the one before it; None where there is none."""
+def first_not_rising(time_s: Floats) -> int | None:
+    """The first sample of times (t,) that is not later than the one before, or is missing; None where all rise."""
     late = np.flatnonzero(~(np.diff(time_s, prepend=-np.inf) > 0.0) | ~np.isfinite(time_s))
     return int(late[0]) if len(late) else None
 
 
 def _refuse_wide(table: TextTable, rows: Sequence[int], layout: Layout) -> None:
-    """InputError for a row with more cells than the header has columns, as of a comma that is a decimal."""
+    """InputError for a row with more cells than the header has columns, which comes of decimal commas."""
     most = max(len(table.rows[layout.first - 1 - n]) for n in range(min(3, layout.first))) if layout.first else 0
     for row in rows:
         if layout.first and any(table.rows[row][most:]):
@@ -138,9 +142,11 @@ def _refuse_wide(table: TextTable, rows: Sequence[int], layout: Layout) -> None:
 
 
 def _refuse_no_seconds(time_s: Floats, layout: Layout, table: TextTable) -> None:
-    """InputError where times without a unit, which would be seconds, are none: too late, or of another step."""
+    """InputError where times without a unit cannot be seconds: they are too late, or disagree with a stated
+    interval.
+    """
     where = f"{table.place(layout.header or 0)}: the time has no unit"
-    if np.abs(time_s).max() > LONGEST_S:
+    if np.abs(time_s).max() > LATEST_TIME_S:
         raise InputError(
             f"{where}, and {time_s[np.abs(time_s).argmax()]:g} can be no seconds; write it behind the name"
         )
@@ -150,7 +156,7 @@ def _refuse_no_seconds(time_s: Floats, layout: Layout, table: TextTable) -> None
         raise InputError(f"{where}, and {time_s[0]:.12g} may count days, as in a spreadsheet; write it behind the name")
     if _is_clock(time_s, step):
         raise InputError(f"{where}, and reads as a clock, 59 being followed by 100; write seconds")
-    if stated is not None and step > 0.0 and abs(step / stated[1] - 1.0) > OTHER_STEP:
+    if stated is not None and step > 0.0 and abs(step / stated[1] - 1.0) > STEP_TOLERANCE:
         raise InputError(
             f"{where}: its samples are {step:g} apart, and '{stated[0]}' above is {stated[1]:g} s; write the unit "
             "behind the name"
@@ -165,7 +171,7 @@ def _is_clock(time_s: Floats, step: float) -> bool:
 
 
 def _refuse_nameless(table: TextTable, rows: Sequence[int], layout: Layout) -> None:
-    """InputError for samples behind the time in a column that the header leaves empty."""
+    """InputError for samples in a column behind the times that the header leaves empty."""
     header = table.rows[layout.header] if layout.header is not None else ()
     empty = [column for column, cell in enumerate(header) if not cell and column > layout.time.column]
     for row in rows:
@@ -177,14 +183,14 @@ def _refuse_nameless(table: TextTable, rows: Sequence[int], layout: Layout) -> N
                 )
 
 
-def _layout(table: TextTable) -> Layout:
-    """Where time and channels stand."""
+def _find_layout(table: TextTable) -> Layout:
+    """The layout of a table: rows and columns of times and channels. InputError."""
     if _is_beside_settings(table):
-        return _beside_settings(table)
+        return _layout_beside_settings(table)
     for row in range(min(HEADER_ROWS, len(table.rows))):
         column = _time_column(table, row)
         if column is not None:
-            return _below_header(table, row, column)
+            return _layout_below_header(table, row, column)
     _refuse_clock(table)
     raise InputError(
         f"'{table.file}' row 1: no header of an oscilloscope or another instrument; known are those of Tektronix, "
@@ -207,7 +213,7 @@ def _cell(table: TextTable, row: int, column: int) -> str:
 
 
 def _time_column(table: TextTable, row: int) -> int | None:
-    """Where the time stands in a row that is a header: names alone, with numbers below them; None in any other."""
+    """The column of times in a row that is a header, one of names with numbers below; None for any other row."""
     cells = table.rows[row]
     if sum(bool(cell) for cell in cells) < 2 or table.is_number(cells[0]) or "unit" in cells[0].lower():
         return None
@@ -221,17 +227,21 @@ def _time_column(table: TextTable, row: int) -> int | None:
 
 
 def _is_header(cells: Sequence[str], column: int, table: TextTable) -> bool:
-    """Whether a row below a time holds a time among names, and is more than units, or start and increment."""
-    under = known_unit(bare(cells[column])) if column < len(cells) else None
-    told = (known_unit(bare(cell), "load") or table.is_number(cell) for cell in cells if cell)  # g and kg too
+    """Whether a row below a time is a header too: it has a time among names, not only units, or start and increment."""
+    under = known_unit(without_brackets(cells[column])) if column < len(cells) else None
+    told = (
+        known_unit(without_brackets(cell), "load") or table.is_number(cell) for cell in cells if cell
+    )  # g and kg too
     return any(_is_time(cell) for cell in cells) and not all(told) and (under is None or under.base != "s")
 
 
 def _is_time(cell: str) -> bool:
-    """Whether a name, without its unit, is that of a time; a letter alone, or in, only with a unit of time or none."""
+    """Whether a name, without its unit, is that of a time; a single letter only where its unit is one of time, or
+    missing.
+    """
     bare = re.sub(r"\s*[(\[{].*", "", cell.strip())
     parts = [bare, bare.rpartition("_")[0], bare.rpartition(",")[0], bare.rpartition("/")[0], bare.rpartition(" ")[0]]
-    found = {part.strip() for part in parts if part.strip() and TIME.fullmatch(part.strip())}
+    found = {part.strip() for part in parts if part.strip() and TIME_NAME.fullmatch(part.strip())}
     if not found or max(map(len, found)) > 2:
         return bool(found)
     try:
@@ -250,7 +260,7 @@ def _first_sample(table: TextTable, row: int, column: int) -> int | None:
     for below in range(row + 1, min(row + 6, len(table.rows))):
         is_setting = column > 0 and table.cell(below, 0)[:1].isalpha()
         text = table.cell(below, column).replace("\u2212", "-")
-        if not is_setting and (table.is_number(text) or NO_NUMBER.fullmatch(text)):
+        if not is_setting and (table.is_number(text) or MISSING_SAMPLE.fullmatch(text)):
             return below
         between += any(table.rows[below])
         if between > 1:
@@ -258,8 +268,8 @@ def _first_sample(table: TextTable, row: int, column: int) -> int | None:
     return None
 
 
-def _below_header(table: TextTable, row: int, column: int) -> Layout:
-    """Names in a row, units there, in the row below or in settings above."""
+def _layout_below_header(table: TextTable, row: int, column: int) -> Layout:
+    """The layout where names are in a row, and units there, in the row below or in settings above. InputError."""
     first = _first_sample(table, row, column)
     assert first is not None
     settings = settings_above(table, row)
@@ -267,11 +277,13 @@ def _below_header(table: TextTable, row: int, column: int) -> Layout:
     header = table.rows[row]
     steps = {cell.lower(): n for n, cell in enumerate(header) if cell.lower() in ("start", "increment")}
     _refuse_segments(settings, table)
-    channels = _united(table, row, _channels(table, row, column, set(steps.values())), units, settings)
-    return Layout(row, first, _time(table, row, column, units, steps, settings), channels, settings)
+    channels = _channels_with_units(
+        table, row, _channel_cells(table, row, column, set(steps.values())), units, settings
+    )
+    return Layout(row, first, _time_column_units(table, row, column, units, steps, settings), channels, settings)
 
 
-def _united(
+def _channels_with_units(
     table: TextTable, row: int, places: Sequence[tuple[int, str]], units: Sequence[str], settings: Settings
 ) -> dict[str, tuple[int, Unit]]:
     """Name -> column and unit of channels (column, cell of the header). InputError for two of one name, or none."""
@@ -279,7 +291,7 @@ def _united(
     found = [(place, cell, *split_name(cell, where)) for place, cell in places]
     names = [name or cell for _, cell, name, _ in found]
     if len(sources) == len(names):
-        names = [source if name.lower() in NAMELESS else name for name, source in zip(names, sources, strict=True)]
+        names = [source if name.lower() in GENERIC_NAMES else name for name, source in zip(names, sources, strict=True)]
     names = [f"CH{name}" if name.isdecimal() else name for name in names]
     channels: dict[str, tuple[int, Unit]] = {}
     assumed = []
@@ -288,8 +300,8 @@ def _united(
             raise InputError(f"{where}: two columns are called '{name[:40]}'; give each its own name")
         beside = [row[place] if place < len(row) else "" for row in (units, settings.units)]
         beside.append(settings.unit_of_channel(n, names, where))
-        channels[name] = (place, _agreed(unit or known_unit(cell), beside, name, where))
-        assumed += [] if unit or known_unit(cell) or any(map(bare, beside)) else [name]
+        channels[name] = (place, _agreed_unit(unit or known_unit(cell), beside, name, where))
+        assumed += [] if unit or known_unit(cell) or any(map(without_brackets, beside)) else [name]
         if channels[name][1].base == "s":
             raise InputError(f"{where}: column '{name[:40]}' is a second time; leave it out")
     if not channels:
@@ -299,13 +311,13 @@ def _united(
     return channels
 
 
-def _channels(table: TextTable, row: int, column: int, without: set[int]) -> list[tuple[int, str]]:
-    """Column and name of what was measured. InputError for a second time, and for numbers without a name."""
+def _channel_cells(table: TextTable, row: int, column: int, without: set[int]) -> list[tuple[int, str]]:
+    """Column and cell of the header of each measured channel. InputError for a second column of times."""
     found = []
     for n, cell in enumerate(table.rows[row]):
-        if n == column or n in without or not cell or DIGITAL.fullmatch(cell):
+        if n == column or n in without or not cell or DIGITAL_NAME.fullmatch(cell):
             continue
-        if (n < column and INDEX.fullmatch(cell)) or START_STEP.match(cell):
+        if (n < column and COUNTER_NAME.fullmatch(cell)) or START_STEP.match(cell):
             continue
         if _is_time(cell):
             raise InputError(
@@ -315,41 +327,43 @@ def _channels(table: TextTable, row: int, column: int, without: set[int]) -> lis
     return found
 
 
-def _agreed(unit: Unit | None, beside: Sequence[str], name: str, where: str) -> Unit:
+def _agreed_unit(unit: Unit | None, beside: Sequence[str], name: str, where: str) -> Unit:
     """The unit of a channel by its header, the rows beside it or the settings above. InputError where they differ."""
     told = [unit] if unit is not None else []
-    told += [unit_of(bare(text), name, where) for text in beside if bare(text)]
+    told += [unit_of(without_brackets(text), name, where) for text in beside if without_brackets(text)]
     if any(one != told[0] for one in told):
         raise InputError(f"{where}: column '{name[:40]}' has two units, in its header and beside it")
-    return told[0] if told else usual_unit(name, where)
+    return told[0] if told else assumed_unit(name, where)
 
 
-def _time(
+def _time_column_units(
     table: TextTable, row: int, column: int, units: Sequence[str], steps: Mapping[str, int], settings: Settings
 ) -> TimeColumn:
-    """Sequence numbers count from a start in steps; seconds where no unit is told. InputError."""
+    """The column of times with its factor to seconds: of sequence numbers, in a stated unit, or else in seconds.
+    InputError.
+    """
     where = table.place(row)
-    beside = [bare(cells[column]) if column < len(cells) else "" for cells in (units, settings.units)]
+    beside = [without_brackets(cells[column]) if column < len(cells) else "" for cells in (units, settings.units)]
     name, unit = split_name(table.rows[row][column], where)
     if beside[0].lower() in ("sequence", "sample", "samples") and steps:
-        return TimeColumn(column, *_start_and_step(table, row, steps), told=True)
+        return TimeColumn(column, *_start_and_step(table, row, steps), has_unit=True)
     named = known_unit(name) if unit is None else None  # second as a name
     if named is not None and named.base == "s":
         unit = named
     beside += settings.time_units
     told = unit is not None or any(beside) or bool(steps)
-    if not told and not TIME.fullmatch(name):
+    if not told and not TIME_NAME.fullmatch(name):
         raise InputError(f"{where}: column '{name[:40]}' is a time, and what is behind its name is not a known unit")
     if not told and any(units):
         raise InputError(f"{where}: column '{name[:40]}' has no unit, and others have one in the row below")
-    agreed = _agreed(unit if told else Unit("s", 1.0), beside, name, where)
+    agreed = _agreed_unit(unit if told else Unit("s", 1.0), beside, name, where)
     if agreed.base != "s":
         raise InputError(f"{where}: column '{name[:40]}' is a time and must be in a unit of time")
     return TimeColumn(column, agreed.factor, 0.0, told)
 
 
 def _start_and_step(table: TextTable, row: int, steps: Mapping[str, int]) -> tuple[float, float]:
-    """Increment and start, which stand in the row of units. InputError where they are missing."""
+    """Increment and start of sequence numbers, which stand in the row of units. InputError where they are missing."""
     below = row + 1
     values = {}
     for name in ("increment", "start"):
@@ -381,8 +395,8 @@ def _is_beside_settings(table: TextTable) -> bool:
     )
 
 
-def _beside_settings(table: TextTable) -> Layout:
-    """Settings in the first columns, time and value in the fourth and fifth."""
+def _layout_beside_settings(table: TextTable) -> Layout:
+    """The layout where settings are in the first columns, time and value in the fourth and fifth. InputError."""
     rows = (table.rows[n] for n in range(min(HEADER_ROWS, len(table.rows))))
     first = {cells[0].lower(): cells[1] for cells in rows if len(cells) > 1}
     where = table.place(0)

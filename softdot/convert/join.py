@@ -18,15 +18,16 @@ from foundation.errors import InputError
 from foundation.nearest_name import nearest_name_hint
 from softdot.convert.instruments import InstrumentLog, LogChannel
 
-COLUMNS = {"V": "voltage_V", "N": "force_N", "mm": "displacement_mm", "C": "temperature_C"}
+COLUMN_OF_UNIT = {"V": "voltage_V", "N": "force_N", "mm": "displacement_mm", "C": "temperature_C"}
 """Unit of a channel -> the column that it becomes where there is no other of the unit."""
-COARSE = 1.5
+COARSE_STEP_RATIO = 1.5
 """Steps of the drive, in steps of the recording, above which its interpolation is judged."""
-FEWEST = 8
+FEWEST_SAMPLES = 8
+"""Least number of samples of a log, and of the time that all logs share."""
 GAP = 4.0
 """Steps without a sample above which what is between is missing."""
-ALIKE = 0.8
-"""Correlation of two channels that record the same, once they are aligned."""
+LEAST_CORRELATION = 0.8
+"""Least correlation of two channels that record the same quantity, once they are aligned."""
 
 
 @dataclass(frozen=True)
@@ -38,32 +39,35 @@ class NamedLog:
 
     @property
     def step_s(self) -> float:
-        """Median step of its times."""
+        """Median step of the times, s."""
         return float(np.median(np.diff(self.log.time_s)))
 
-    def shifted(self, by_s: float) -> "NamedLog":
-        """The same on another clock."""
+    def shift(self, by_s: float) -> "NamedLog":
+        """The log with by_s seconds added to its times."""
         return replace(self, log=replace(self.log, time_s=self.log.time_s + by_s))
 
 
 @dataclass(frozen=True)
 class JoinedRun:
-    """columns : name -> samples (t,), time_s first. said, warnings : a sentence each."""
+    """The logs of one run on one clock: columns by name, samples (t,), time_s first; remarks and warnings in
+    sentences.
+    """
 
     columns: Mapping[str, Floats]
-    said: Sequence[str]
+    remarks: Sequence[str]
     warnings: Sequence[str]
 
 
-def joined(logs: Sequence[NamedLog], named: Mapping[str, str], offsets_s: Sequence[float], align: bool) -> JoinedRun:
-    """One run of logs. named : channel -> column, none where units tell. InputError.
+def join_logs(logs: Sequence[NamedLog], named: Mapping[str, str], offsets_s: Sequence[float], align: bool) -> JoinedRun:
+    """Join logs into the columns of one run. InputError.
 
-    offsets_s : what is added to the times of each log behind the first, none where one trigger started all. align : by
-    a channel of force or displacement that each log shares with the first.
+    named : channel -> column, empty where units tell. offsets_s : added to the times of each log behind the first,
+    empty where one trigger started all. align : find the offsets by a channel of force or displacement that each log
+    shares with the first.
     """
     for one in logs:
-        if len(one.log.time_s) < FEWEST:
-            raise InputError(f"'{one.file}': has {len(one.log.time_s)} samples, at least {FEWEST} are needed")
+        if len(one.log.time_s) < FEWEST_SAMPLES:
+            raise InputError(f"'{one.file}': has {len(one.log.time_s)} samples, at least {FEWEST_SAMPLES} are needed")
     places, shared = _columns(logs, named, align)
     logs, said, warnings = _on_one_clock(logs, offsets_s, align, shared)
     main = min(range(len(logs)), key=lambda n: (not _has_voltage(n, places), logs[n].step_s))
@@ -71,43 +75,47 @@ def joined(logs: Sequence[NamedLog], named: Mapping[str, str], offsets_s: Sequen
     end = min(float(one.log.time_s[-1]) for one in logs)
     time = logs[main].log.time_s
     time = time[(time >= start) & (time <= end)]
-    if len(time) < FEWEST:
+    if len(time) < FEWEST_SAMPLES:
         names = ", ".join(f"'{one.file}'" for one in logs)
         raise InputError(
-            f"{names}: share {max(end - start, 0.0):.3g} s, less than {FEWEST} "
+            f"{names}: share {max(end - start, 0.0):.3g} s, less than {FEWEST_SAMPLES} "
             "samples; state by --offset how much later each clock began"
         )
     columns = {"time_s": time}
     for column, (number, name) in places.items():
         one = logs[number]
         values = one.log.channels[name].values
-        if np.isfinite(values).sum() < FEWEST:
-            raise InputError(f"'{one.file}': '{name}' was measured in less than {FEWEST} samples")
-        columns[column] = _at(time, one.log.time_s, values) if number != main else values[np.isin(one.log.time_s, time)]
+        if np.isfinite(values).sum() < FEWEST_SAMPLES:
+            raise InputError(f"'{one.file}': '{name}' was measured in less than {FEWEST_SAMPLES} samples")
+        columns[column] = (
+            _interpolate(time, one.log.time_s, values) if number != main else values[np.isin(one.log.time_s, time)]
+        )
         if number != main and (far := _is_far(time, one.log.time_s[np.isfinite(values)], GAP * one.step_s)).any():
             columns[column][far] = np.nan
             warnings.append(
                 f"{column}: '{name}' of '{one.file.name}' has gaps, so {100.0 * far.mean():.2g} % of its samples are "
                 "missing"
             )
-        said.append(f"{column} is '{name}' of '{one.file.name}', a sample every {one.step_s:.3g} s")
-        if column != "temperature_C" and one.step_s > COARSE * logs[main].step_s:
-            warnings.append(_cost(column, one, values, logs[main].step_s, time))
-    return JoinedRun(columns, said, warnings)
+        remarks.append(f"{column} is '{name}' of '{one.file.name}', a sample every {one.step_s:.3g} s")
+        if column != "temperature_C" and one.step_s > COARSE_STEP_RATIO * logs[main].step_s:
+            warnings.append(_coarse_drive_warning(column, one, values, logs[main].step_s, time))
+    return JoinedRun(columns, remarks, warnings)
 
 
 def _columns(
     logs: Sequence[NamedLog], named: Mapping[str, str], align: bool
 ) -> tuple[dict[str, tuple[int, str]], dict[int, str]]:
-    """Column -> log and channel; and, to align, log -> its channel of the quantity that the first log has too."""
+    """Column -> log and channel; and, to align, log -> its channel of the quantity that the first log has too.
+    InputError.
+    """
     every = [(n, name, channel) for n, one in enumerate(logs) for name, channel in one.log.channels.items()]
-    shared = {n: _shared(logs[0], one) for n, one in enumerate(logs) if n > 0} if align else {}
+    shared = {n: _shared_channel(logs[0], one) for n, one in enumerate(logs) if n > 0} if align else {}
     if named:
-        return {column: _found(every, channel, column) for channel, column in named.items()}, shared
+        return {column: _channel_place(every, channel, column) for channel, column in named.items()}, shared
     twice = set(shared.items())
     left = [(n, name, channel) for n, name, channel in every if (n, name) not in twice]
     found: dict[str, tuple[int, str]] = {}
-    for unit, column in COLUMNS.items():
+    for unit, column in COLUMN_OF_UNIT.items():
         mine = [(n, name) for n, name, channel in left if channel.unit == unit]
         if unit == "V" and len(mine) > 1:
             found |= {f"voltage_{number}_V": one for number, one in enumerate(mine, 1)}
@@ -121,8 +129,8 @@ def _columns(
     return found, shared
 
 
-def _found(every: Sequence[tuple[int, str, LogChannel]], channel: str, column: str) -> tuple[int, str]:
-    """Where a channel is. InputError where none, or several, are called so, or where it has another unit."""
+def _channel_place(every: Sequence[tuple[int, str, LogChannel]], channel: str, column: str) -> tuple[int, str]:
+    """Log and name of a channel. InputError for none or several of the name, or another unit than the column's."""
     mine = [(n, name, one) for n, name, one in every if name == channel]
     if len(mine) != 1:
         known = nearest_name_hint(channel, [name for _, name, _ in every])
@@ -135,8 +143,8 @@ def _found(every: Sequence[tuple[int, str, LogChannel]], channel: str, column: s
     return number, name
 
 
-def _shared(first: NamedLog, other: NamedLog) -> str:
-    """The channel of another log that records what one of the first does: force, else displacement. InputError."""
+def _shared_channel(first: NamedLog, other: NamedLog) -> str:
+    """The channel of another log that measures the same as one of the first: force, else displacement. InputError."""
     for unit in ("N", "mm"):
         if _of_unit(first, unit) is not None and (name := _of_unit(other, unit)) is not None:
             return name
@@ -147,7 +155,7 @@ def _shared(first: NamedLog, other: NamedLog) -> str:
 
 
 def _of_unit(one: NamedLog, unit: str) -> str | None:
-    """The only channel of a unit."""
+    """The name of the only channel of a unit, None where there is none or several."""
     names = [name for name, channel in one.log.channels.items() if channel.unit == unit]
     return names[0] if len(names) == 1 else None
 
@@ -159,7 +167,7 @@ def _has_voltage(number: int, places: Mapping[str, tuple[int, str]]) -> bool:
 def _on_one_clock(
     logs: Sequence[NamedLog], offsets_s: Sequence[float], align: bool, shared: Mapping[int, str]
 ) -> tuple[list[NamedLog], list[str], list[str]]:
-    """The logs by the clock of the first, how that is known, and warnings. InputError."""
+    """The logs with the times of the first one's clock, and a sentence for each on how that is known. InputError."""
     first, *others = logs
     if align and offsets_s:
         raise InputError("--offset: is found by --align; give one of them")
@@ -168,24 +176,23 @@ def _on_one_clock(
             f"--offset: {len(offsets_s)} are given; needs one for each log behind the first, {len(others)}"
         )
     if offsets_s:
-        moved = [one.shifted(by) for one, by in zip(others, offsets_s, strict=True)]
+        moved = [one.shift(by) for one, by in zip(others, offsets_s, strict=True)]
         told = [f"'{one.file.name}' begins at {one.log.time_s[0]:.6g} s, as stated" for one in moved]
         return [first, *moved], told, []
     if not align:
         return list(logs), ["all clocks are taken as started by one trigger"] if others else [], []
     moved, said, warnings = [], [], []
     for number, one in enumerate(others, 1):
-        by, found, drift = _lag(first, one, shared[number])
-        moved.append(one.shifted(by))
+        by, found, drift = _clock_shift(first, one, shared[number])
+        moved.append(one.shift(by))
         said.append(found)
         warnings += drift
     return [first, *moved], said, warnings
 
 
-def _lag(first: NamedLog, other: NamedLog, channel: str) -> tuple[float, str, list[str]]:
-    """What is added to the times of another log, by the channel that it shares with the first; how, and warnings.
-
-    InputError where the two do not run alike.
+def _clock_shift(first: NamedLog, other: NamedLog, channel: str) -> tuple[float, str, list[str]]:
+    """Seconds to add to the times of another log, by the channel that it shares with the first, and a sentence.
+    InputError.
     """
     unit = other.log.channels[channel].unit
     own = _of_unit(first, unit)
@@ -195,12 +202,12 @@ def _lag(first: NamedLog, other: NamedLog, channel: str) -> tuple[float, str, li
     for one, name in ((first, own), (other, channel)):
         count = int((one.log.time_s[-1] - one.log.time_s[0]) / step) + 1
         at = one.log.time_s[0] + step * np.arange(count)
-        even.append(_at(at, one.log.time_s, one.log.channels[name].values))
+        even.append(_interpolate(at, one.log.time_s, one.log.channels[name].values))
     try:
         found = lag_between(even[0], even[1], step)
     except (ValueError, np.linalg.LinAlgError):
         raise InputError(f"--align: '{own}' or '{channel}' never changes; state --offset") from None
-    if not found.correlation > ALIKE:
+    if not found.correlation > LEAST_CORRELATION:
         raise InputError(
             f"--align: '{own}' and '{channel}' do not run alike (correlation {found.correlation:.2f}); state --offset"
         )
@@ -222,7 +229,7 @@ def _drift(even: Sequence[Floats], found: Lag, step_s: float, where: str) -> lis
         return []
     apart = halves[1].lag_s - halves[0].lag_s
     sure = max(5.0 * np.hypot(halves[0].sigma_s, halves[1].sigma_s), step_s)
-    if abs(apart) < sure or not all(half.correlation > ALIKE for half in halves):
+    if abs(apart) < sure or not all(half.correlation > LEAST_CORRELATION for half in halves):
         return []
     return [
         f"{where}its lag changes by {apart:.3g} s from the first half to the second, so one clock runs faster by about "
@@ -230,11 +237,13 @@ def _drift(even: Sequence[Floats], found: Lag, step_s: float, where: str) -> lis
     ]
 
 
-def _at(time_s: Floats, given_s: Floats, values: Floats) -> Floats:
-    """Values at other times; those that were not measured are bridged."""
+def _interpolate(time_s: Floats, given_s: Floats, values: Floats) -> Floats:
+    """Values at other times by monotone cubics; missing samples are bridged. InputError where fewer than two are
+    left.
+    """
     there = np.isfinite(values)
-    if there.sum() < FEWEST:
-        raise InputError(f"a channel was measured in less than {FEWEST} samples")
+    if there.sum() < FEWEST_SAMPLES:
+        raise InputError(f"a channel was measured in less than {FEWEST_SAMPLES} samples")
     curve = PchipInterpolator(given_s[there], values[there], extrapolate=False)
     return np.asarray(curve(np.clip(time_s, given_s[there][0], given_s[there][-1])))
 
@@ -249,11 +258,11 @@ def _is_far(time_s: Floats, measured_s: Floats, widest_s: float) -> Bools:
     return np.asarray(np.where(inside, wide & (known[after + 1] != time_s), beside > widest_s))
 
 
-def _cost(column: str, one: NamedLog, values: Floats, step_s: float, time_s: Floats) -> str:
-    """What a coarse log costs, by the same log with half of its samples.
+def _coarse_drive_warning(column: str, one: NamedLog, values: Floats, step_s: float, time_s: Floats) -> str:
+    """A warning of the error of a drive with few samples, estimated from the same drive with half of them.
 
-    The error of such a curve falls at least with the square of the step, that of its rate with the step; so what is
-    seen at twice the step is four times, and twice, what the whole drive has. Its noise is counted in.
+    The error of such a curve falls at least with the square of the step, that of its rate with the step; so the error
+    at twice the step is four times, and twice, that of the whole drive. Its noise is counted in.
     """
     there = np.isfinite(values)
     given, known = one.log.time_s[there], values[there]

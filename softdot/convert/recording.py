@@ -13,7 +13,7 @@ from softdot.config.rig import RIG_FILE, load_rig
 
 
 def write_recording(out: Path | str, rig: str, files: Mapping[str, Mapping[str, Floats]]) -> None:
-    """A new folder with rig.toml and one CSV per item, file name -> column -> samples (t,).
+    """Write a new folder with rig.toml and CSV files. files : name -> column -> samples (t,).
 
     It is read back by the rules of softdot diagnose before it takes its place. InputError when out exists and holds
     anything, for a file that would not lie in it, and when what was written is no recording.
@@ -39,7 +39,7 @@ def write_recording(out: Path | str, rig: str, files: Mapping[str, Mapping[str, 
 
 
 def _refuse_unreadable(staging: Path, out: Path) -> None:
-    """InputError for what is no recording; it names the folder that was asked for."""
+    """InputError, naming the folder that was asked for, where what was written is no recording."""
     try:
         load_rig(staging)
     except InputError as error:
@@ -74,28 +74,33 @@ def run_text(
     nuisance: Mapping[str, float] | None = None,
     noise: Mapping[str, float] | None = None,
 ) -> str:
-    """A table [[runs]] with its sub-tables."""
-    lines = ["[[runs]]", f"file = {_quoted(file)}", f"label = {_quoted(label)}", f"drive = {_quoted(drive)}"]
+    """The TOML text of a table [[runs]] with its sub-tables."""
+    lines = [
+        "[[runs]]",
+        f"file = {_toml_string(file)}",
+        f"label = {_toml_string(label)}",
+        f"drive = {_toml_string(drive)}",
+    ]
     if temperature_C is not None:
         lines.append(f"temperature_C = {temperature_C}")
     for name, table in (("nuisance", nuisance), ("noise", noise)):
         if table:
-            lines += [f"[runs.{name}]", *(f"{_key(key)} = {value:.3g}" for key, value in table.items())]
+            lines += [f"[runs.{name}]", *(f"{_toml_key(key)} = {value:.3g}" for key, value in table.items())]
     return "\n".join(lines) + "\n"
 
 
-def _quoted(text: str) -> str:
+def _toml_string(text: str) -> str:
     return json.dumps(text, ensure_ascii=False)
 
 
-def _key(name: str) -> str:
+def _toml_key(name: str) -> str:
     return f'"{name}"' if "." in name else name
 
 
 def white_noise(values: Floats) -> float:
-    """One sigma from third differences of (t,), which a curve that is smooth over four samples hardly has.
+    """Standard deviation of white noise, by third differences of (t,), which a smooth curve hardly has.
 
     von Neumann, Annals of Mathematical Statistics 12 (1941) 367, for the first difference; the third has the weights
-    1, -3, 3, -1 and 20 times the variance. It knows nothing of slow noise.
+    (1, -3, 3, -1) and 20 times the variance. Slow noise is not counted.
     """
     return float(np.sqrt(np.mean(np.diff(values, 3) ** 2) / 20.0))

@@ -6,15 +6,15 @@ from dataclasses import dataclass
 
 from foundation.errors import InputError
 from softdot.convert.text_table import NUMBER, TextTable
-from softdot.convert.units import CURRENT, QUANTITIES, known_unit
+from softdot.convert.units import CURRENT_UNIT, QUANTITY_NAMES, known_unit
 
-INTERVAL = re.compile(
+INTERVAL_KEY = re.compile(
     r"(?:sampl\w*[ _]*|time[ _]*|[xht][ _]*)?(?:interval|period|incr\w*|resolution)|"
     r"(?:sampl\w*|data)[ _]*(?:rate|freq\w*)|fs|clock|(?:delta|d)[ _]?[xt]|tinc",
     re.IGNORECASE,
 )
-"""Settings that say how far apart samples are, or how many there are in a second."""
-RATE = re.compile(r"([kMG]?)(?:Hz|Sa/s|S/s|samples(?:/s| per second)|sps)", re.IGNORECASE)
+"""Keys of settings for the interval between samples, or for the number of samples in a second."""
+RATE_UNIT = re.compile(r"([kMG]?)(?:Hz|Sa/s|S/s|samples(?:/s| per second)|sps)", re.IGNORECASE)
 UNIT_KEY = re.compile(
     r"(?:(?P<time>horizontal|time|zeit|[xht])|vertical|channel|kanal|signal|data|amplitude|[yv])?[ _-]*(?:axis[ _-]*)?"
     r"(?:units?|einheit(?:en)?)"
@@ -22,11 +22,14 @@ UNIT_KEY = re.compile(
 """Settings that say the unit of the time, or of any channel."""
 OF_NO_SAMPLES = re.compile(r"trigger|offset|delay|level|limit|range|scale|display")
 PER_SECOND = {"": 1.0, "k": 1e3, "m": 1e6, "g": 1e9}
+"""Prefix of a rate in small letters -> its factor."""
 
 
 @dataclass(frozen=True)
 class Settings:
-    """values : key in small letters -> the cells beside it. units : of each column, in a row above the names."""
+    """The settings above a header: key in small letters -> the cells beside it; units of each column, in a row above
+    the names.
+    """
 
     values: Mapping[str, Sequence[str]]
     units: Sequence[str]
@@ -38,11 +41,11 @@ class Settings:
     @property
     def time_units(self) -> list[str]:
         """Of the time."""
-        return [text for key, text in self._told() if _is_of_time(key, text)]
+        return [text for key, text in self._stated_units() if _is_of_time(key, text)]
 
     def unit_of_channel(self, number: int, names: Sequence[str], where: str) -> str:
-        """Of the channel with this number, by its name or place; empty where none is told. InputError."""
-        stated = [(key, text) for key, text in self._told() if not _is_of_time(key, text)]
+        """The unit of the channel with this number, by its name or place; "" where no setting states it. InputError."""
+        stated = [(key, text) for key, text in self._stated_units() if not _is_of_time(key, text)]
         others = self._of_quantities()
         named = re.compile(rf"(?<!\w){re.escape(names[number].lower())}(?!\w)")  # CH1 unit, Force unit
         own = [one for one in others if named.search(one[0])]
@@ -64,7 +67,7 @@ class Settings:
             )
         return told[number]
 
-    def _told(self) -> list[tuple[str, str]]:
+    def _stated_units(self) -> list[tuple[str, str]]:
         """Key and text of every unit that a setting states, known or not."""
         return [
             (key, text)
@@ -86,11 +89,11 @@ class Settings:
 
     @property
     def interval_s(self) -> tuple[str, float] | None:
-        """The key that says how far apart samples are, and seconds; None where none does."""
+        """The key of the interval between samples and its length in s; None where no setting states it."""
         for full_key, texts in self.values.items():
             key, _, key_unit = re.sub(r"[)\]]$", "", full_key).partition("(" if "(" in full_key else "[")
             key = key.strip()
-            if INTERVAL.fullmatch(key):
+            if INTERVAL_KEY.fullmatch(key):
                 text = " ".join([*texts[:1], key_unit, *texts[1:2]]).rpartition(":")[2].strip()
                 found = re.match(rf"({NUMBER.pattern})\s*(samples per second|\S*)", text, re.ASCII)
                 seconds = _seconds(key, found[1], found[2]) if found else None
@@ -103,7 +106,7 @@ def _is_unit(text: str, texts: Sequence[str]) -> bool:
     """Whether a text behind Unit is one, and no device or system of units."""
     if any(known_unit(one.rpartition(":")[2]) for one in texts):
         return not re.search(r"\d", text.rpartition(":")[2])
-    return "/" in text or CURRENT.fullmatch(text) is not None
+    return "/" in text or CURRENT_UNIT.fullmatch(text) is not None
 
 
 def _is_of_time(key: str, text: str) -> bool:
@@ -115,13 +118,13 @@ def _is_of_time(key: str, text: str) -> bool:
 def _is_of(name: str, text: str) -> bool:
     """Whether a name says the quantity that this is a unit of."""
     unit = known_unit(text.rpartition(":")[2], name)
-    return unit is not None and QUANTITIES[unit.base].search(name) is not None
+    return unit is not None and QUANTITY_NAMES[unit.base].search(name) is not None
 
 
 def _seconds(key: str, number: str, unit: str) -> float | None:
-    """Between two samples."""
+    """The interval between two samples, s, from an interval or a rate; None where the unit is neither."""
     value = float(number.upper().replace("D", "E").replace(",", "."))
-    rate = RATE.fullmatch(unit)
+    rate = RATE_UNIT.fullmatch(unit)
     if rate or ("rate" in key or "freq" in key or key == "fs"):
         value *= PER_SECOND[rate[1].lower()] if rate else 1.0
         return 1.0 / value if value > 0.0 and (rate or not unit) else None
@@ -130,7 +133,7 @@ def _seconds(key: str, number: str, unit: str) -> float | None:
 
 
 def settings_above(table: TextTable, row: int) -> Settings:
-    """Of the rows above a header."""
+    """The settings in the rows above a header."""
     values: dict[str, list[str]] = {}
     for cells in table.rows[:row]:
         if not any(cells[1:]) and cells:
@@ -139,10 +142,10 @@ def settings_above(table: TextTable, row: int) -> Settings:
             values[cells[0].lstrip("#%/ ").rstrip(": ").lower()] = [cell for cell in cells[1:] if cell]
     above = table.rows[row - 1] if row else []
     stated = [cell for cell in above if cell]
-    is_units = len(stated) > 1 and all(known_unit(bare(cell), "load") for cell in stated)
+    is_units = len(stated) > 1 and all(known_unit(without_brackets(cell), "load") for cell in stated)
     return Settings(values, above if is_units else [])
 
 
-def bare(cell: str) -> str:
-    """(mV) -> mV."""
+def without_brackets(cell: str) -> str:
+    """The text of a cell without brackets around it: (mV) -> mV."""
     return cell.strip().strip("()[]{}").strip()

@@ -15,43 +15,43 @@ from foundation.errors import InputError
 from foundation.files import regular_file_size
 
 LARGEST_MB = 500
-MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
-"""First bytes of a file -> its encoding."""
+BYTE_ORDER_MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
+"""First bytes of a file -> the encoding that they announce."""
 NUMBER = re.compile(r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eEdD][+-]?\d+)?", re.ASCII)
-NO_NUMBER = re.compile(r"[+-]?(?:nan|inf|infinity|\u221e)", re.IGNORECASE)
+MISSING_SAMPLE = re.compile(r"[+-]?(?:nan|inf|infinity|\u221e)", re.IGNORECASE)
 """A sample that is missing, or beyond the range of its channel as PicoScope writes it."""
 NOT_A_NUMBER, OVERFLOW = 9.91e37, 9.9e37
-"""How instruments write the same in numbers (SCPI-1999, volume 1, 7.2.1.4 and 7.2.1.5)."""
-GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(?:[.,]\d{3})+", re.ASCII)
-"""What may be thousands: 1,234."""
-LOOKED_AT = 200  # rows
+"""Numbers by which instruments mark missing and overflowing samples (SCPI-1999, volume 1, 7.2.1.4 and 7.2.1.5)."""
+GROUPED_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:[.,]\d{3})+", re.ASCII)
+"""Numbers that may have thousands set apart: 1,234."""
+SEPARATOR_LINES = 200  # rows
 
 
 @dataclass(frozen=True)
 class TextTable:
-    """rows : the cells of every line, blanks around them taken off. decimal : '.' or ','. file : that it is from."""
+    """A table of text: rows, the cells of every line without blanks around them; decimal, '.' or ','; and the file."""
 
     rows: Sequence[Sequence[str]]
     decimal: str
     file: Path
 
     def place(self, row: int) -> str:
-        """Where a row stands, counted from 1."""
+        """The place of a row for a message, rows counted from 1."""
         return f"'{self.file}' row {row + 1}"
 
     def cell(self, row: int, column: int) -> str:
-        """The cell, empty where the row ends before it."""
+        """The text of a cell, "" where the row ends before it."""
         cells = self.rows[row]
         return cells[column] if column < len(cells) else ""
 
     def is_number(self, text: str) -> bool:
-        """Whether a cell is one, in this file's way of writing it."""
+        """Whether a text is a number with this file's decimal sign."""
         return bool(NUMBER.fullmatch(text)) and ("," if self.decimal == "." else ".") not in text
 
     def number(self, row: int, column: int) -> float:
-        """NaN for an empty cell and for what is not measured. InputError for what is no number."""
+        """The number in a cell; NaN for an empty cell and a missing sample. InputError for a text that is no number."""
         text = self.cell(row, column).replace("\u2212", "-")
-        if not text or NO_NUMBER.fullmatch(text):
+        if not text or MISSING_SAMPLE.fullmatch(text):
             return float("nan")
         if not self.is_number(text):
             raise InputError(f"{self.place(row)}, column {column + 1} = '{text[:40]}': must be a number")
@@ -66,10 +66,10 @@ class TextTable:
 
 
 def read_text_table(file: Path) -> TextTable:
-    """InputError for a file that cannot be read, is none of text or mixes points and commas in its numbers."""
-    text = decoded(file)
-    text, told = _told_separator(text)
-    separator = told or _separator(text)
+    """Read a text file as a table. InputError for one that cannot be read or mixes points and commas in its numbers."""
+    text = file_text(file)
+    text, told = _split_off_separator(text)
+    separator = told or _likely_separator(text)
     try:
         rows = [
             [" ".join(cell.split()) for cell in row]
@@ -80,7 +80,7 @@ def read_text_table(file: Path) -> TextTable:
     return TextTable(rows, _decimal(rows, file), file)
 
 
-def decoded(file: Path) -> str:
+def file_text(file: Path) -> str:
     """The text of a file in UTF-8, UTF-16 or, where it is neither, Latin-1. InputError."""
     if (size := regular_file_size(file, f"'{file}'")) > 1e6 * LARGEST_MB:
         raise InputError(f"'{file}': has {size / 1e6:.0f} MB, at most {LARGEST_MB} MB are read")
@@ -94,7 +94,8 @@ def decoded(file: Path) -> str:
 
 
 def _encoding(content: bytes) -> str:
-    for mark, encoding in MARKS.items():
+    """The encoding of the bytes of a text file."""
+    for mark, encoding in BYTE_ORDER_MARKS.items():
         if content.startswith(mark):
             return encoding
     head = content[:200]
@@ -109,15 +110,15 @@ def _encoding(content: bytes) -> str:
     return "utf-8"
 
 
-def _told_separator(text: str) -> tuple[str, str]:
-    """What spreadsheets write into a first line of its own, sep=;"""
+def _split_off_separator(text: str) -> tuple[str, str]:
+    """The text without a first line sep=; of a spreadsheet, and the sign which that states, "" without one."""
     found = re.match(r'"?sep=(.)"?[ \t]*\r?\n', text)
     return (text[found.end() :], found[1]) if found else (text, "")
 
 
-def _separator(text: str) -> str:
-    """Semicolon or tab where most of the first lines have one, else comma."""
-    lines = [line for line in text.splitlines()[:LOOKED_AT] if line.strip()]
+def _likely_separator(text: str) -> str:
+    """The sign between columns: semicolon or tab where most of the first lines have one, else comma."""
+    lines = [line for line in text.splitlines()[:SEPARATOR_LINES] if line.strip()]
     for mark in (";", "\t"):
         if 2 * sum(mark in line for line in lines) > len(lines):
             return mark
@@ -125,7 +126,9 @@ def _separator(text: str) -> str:
 
 
 def _decimal(rows: Sequence[Sequence[str]], file: Path) -> str:
-    """Comma or point, whichever the samples have. InputError where they have both, or it may be one of thousands."""
+    """The decimal sign of the samples, point or comma. InputError where they have both, or it may set thousands
+    apart.
+    """
     marks: dict[str, str] = {}
     decimals: set[str] = set()
     grouped: set[int] = set()  # columns of 1,234
@@ -141,7 +144,7 @@ def _decimal(rows: Sequence[Sequence[str]], file: Path) -> str:
                 continue
             marks.setdefault(mark, f"row {number + 1}: '{cell[:40]}'")
             if mark not in decimals:
-                is_grouped = GROUPED.fullmatch(cell)
+                is_grouped = GROUPED_THOUSANDS.fullmatch(cell)
                 (grouped.add(column) if is_grouped else decimals.add(mark))
     if len(marks) == 2:
         raise InputError(f"'{file}': numbers have points ({marks['.']}) and commas ({marks[',']}); which are decimals?")

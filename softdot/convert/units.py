@@ -1,7 +1,7 @@
 """Units as instruments write them into the headers of their files, and the factor of each to that of a recording.
 
-A unit stands in brackets, behind a slash, a comma or an underscore, at the end of a name, or in a row of its own. What
-is not known is refused by name: a factor of a thousand is no matter of guessing.
+A unit stands in brackets, behind a slash, a comma or an underscore, at the end of a name, or in a row of its own. An
+unknown one is refused by name: a factor of a thousand must not be guessed.
 """
 
 import re
@@ -17,7 +17,7 @@ PREFIXES = {"": 1.0, "n": 1e-9, "u": 1e-6, "\u00b5": 1e-6, "\u03bc": 1e-6, "m": 
 
 @dataclass(frozen=True)
 class Unit:
-    """base : s, V, N, mm or C, the units of a recording. factor : to it."""
+    """A unit: base, the one of a recording for its quantity (s, V, N, mm or C), and the factor to it."""
 
     base: str
     factor: float
@@ -27,7 +27,7 @@ def _with_prefixes(base: str, *names: str) -> dict[str, Unit]:
     return {f"{prefix}{name}": Unit(base, factor) for prefix, factor in PREFIXES.items() for name in names}
 
 
-EXACT = {
+UNITS_BY_SYMBOL = {
     **_with_prefixes("s", "s", "sec"),
     **_with_prefixes("V", "V", "v"),
     **_with_prefixes("N", "N"),
@@ -39,24 +39,24 @@ EXACT = {
     "lbf": Unit("N", POUND_KG * STANDARD_GRAVITY), "ozf": Unit("N", POUND_KG / 16.0 * STANDARD_GRAVITY),
     "°C": Unit("C", 1.0), "℃": Unit("C", 1.0), "degC": Unit("C", 1.0),
 }  # fmt: skip
-"""Letters count: mV is not MV, N no n, s no S of conductance but where it stands alone."""
-WORDS = {
+"""Symbol -> unit; case matters: mV is not MV, N is not n, and S means seconds only where it stands alone."""
+UNITS_BY_WORD = {
     **{f"{prefix}{name}": Unit(base, factor * size)
        for prefix, factor in {"": 1.0, "milli": 1e-3, "micro": 1e-6, "nano": 1e-9, "kilo": 1e3}.items()
        for name, base, size in (("second", "s", 1.0), ("volt", "V", 1.0), ("newton", "N", 1.0), ("meter", "mm", 1e3),
                                 ("metre", "mm", 1e3))},
-    **{name: EXACT[short] for name, short in {
+    **{name: UNITS_BY_SYMBOL[short] for name, short in {
         "sec": "s", "msec": "ms", "usec": "us", "nsec": "ns", "minute": "min", "hour": "h", "micron": "um",
         "inch": "in", "gram-force": "gf", "pound-force": "lbf", "kilogram-force": "kgf", "min": "min",
         "milli": "ms", "micro": "us", "gf": "gf", "kgf": "kgf", "lbf": "lbf", "ozf": "ozf", "degc": "degC"}.items()},
 }  # fmt: skip
-"""In capitals or small letters, in the singular or the plural."""
-WEIGHTS = {"g": "gf", "kg": "kgf", "mg": "mgf", "lb": "lbf", "lbs": "lbf", "oz": "ozf"}
-"""Of a load cell, whose scale counts masses: their weight is meant."""
-LOAD = re.compile(r"^(?!.*(?:accel|g[- ]?force)).*(?:load|force|cell|weight|scale|kraft|last)", re.IGNORECASE)
-TEMPERATURE = re.compile(r"temp|t_?room", re.IGNORECASE)
-CURRENT = re.compile(r"(?:[nu\u00b5\u03bcmk]?A|amps?|amperes?|milliamps?)", re.IGNORECASE)
-NAMED_CURRENT = re.compile(r"\b(?:current|strom|amperage)\b", re.IGNORECASE)
+"""Word in small letters and the singular -> unit."""
+WEIGHT_OF_MASS = {"g": "gf", "kg": "kgf", "mg": "mgf", "lb": "lbf", "lbs": "lbf", "oz": "ozf"}
+"""Unit of mass -> the unit of force that a load cell means by it: the weight."""
+LOAD_NAME = re.compile(r"^(?!.*(?:accel|g[- ]?force)).*(?:load|force|cell|weight|scale|kraft|last)", re.IGNORECASE)
+TEMPERATURE_NAME = re.compile(r"temp|t_?room", re.IGNORECASE)
+CURRENT_UNIT = re.compile(r"(?:[nu\u00b5\u03bcmk]?A|amps?|amperes?|milliamps?)", re.IGNORECASE)
+CURRENT_NAME = re.compile(r"\b(?:current|strom|amperage)\b", re.IGNORECASE)
 TEN = r"(?:10+|0[.,]0*1|1[eE][-+]?\d+)"
 FACTOR = re.compile(
     rf"(?:(?<=[\s\[])x|[×*·/])\s*{TEN}(?!\d)|(?<![\w.]){TEN}\s*[x×*·]|(?<!\w)(?:1[eE][-+]?\d+|1:10+|10+:1)(?!\w)|"
@@ -64,7 +64,7 @@ FACTOR = re.compile(
     re.IGNORECASE,
 )
 """What would change the unit that stands beside it: x10, /1000, 10:1, per mm."""
-QUANTITIES = {
+QUANTITY_NAMES = {
     base: re.compile(rf"(?:{words})", re.IGNORECASE)
     for base, words in {
         "s": r"time|zeit|temps|elapsed|(?<![a-z])t(?![a-z])",
@@ -74,38 +74,43 @@ QUANTITIES = {
         "C": r"temp(?!s)",
     }.items()
 }
-"""What the name of a column says of it."""
+"""Unit of a recording -> words in the name of a column that measures it."""
 ALSO_WORDS = {"s", "S", "h", "m", "in", "min", "C", "v"}
 """Units that may be an end of a name as well: V_in is no inch, Force_min no minute."""
-SHOWN = "ns, us, ms, s, min, h, nV, uV, mV, V, kV, mN, N, kN, gf, kgf, lbf, um, mm, cm, m, in, °C"
+KNOWN_UNITS = "ns, us, ms, s, min, h, nV, uV, mV, V, kV, mN, N, kN, gf, kgf, lbf, um, mm, cm, m, in, °C"
 
 
 def unit_of(text: str, name: str, where: str) -> Unit:
-    """The unit of a column. name : of the column. InputError, which begins with where, for one that is not known."""
+    """The unit that a text states. name : of its column. InputError, which begins with where, for an unknown one."""
     found = known_unit(text, name)
     if found is not None:
         return found
     shown = f"{where}: column '{name[:40]}' is in '{text[:20]}'"
-    if CURRENT.fullmatch(text):
+    if CURRENT_UNIT.fullmatch(text):
         raise InputError(f"{shown}, a current: no channel of a recording; leave this column out")
-    if text in WEIGHTS:
+    if text in WEIGHT_OF_MASS:
         raise InputError(f"{shown}, a mass or an acceleration; a load cell's column is named as one, such as Load (g)")
-    raise InputError(f"{shown}, which is not a known unit; known are {SHOWN}")
+    raise InputError(f"{shown}, which is not a known unit; known are {KNOWN_UNITS}")
 
 
 def known_unit(text: str, name: str = "") -> Unit | None:
-    """The unit, or None for one that is not known."""
+    """The unit that a text states, None for an unknown one. name : of its column."""
     text = text.strip().rstrip(".")
-    if text in WEIGHTS and LOAD.search(name):
-        return EXACT[WEIGHTS[text]]
-    if text == "C" and TEMPERATURE.match(name):  # elsewhere it is a charge
-        return EXACT["°C"]
+    if text in WEIGHT_OF_MASS and LOAD_NAME.search(name):
+        return UNITS_BY_SYMBOL[WEIGHT_OF_MASS[text]]
+    if text == "C" and TEMPERATURE_NAME.match(name):  # elsewhere it is a charge
+        return UNITS_BY_SYMBOL["°C"]
     low = text.lower()
-    return EXACT.get(text) or WORDS.get(low) or WORDS.get(low.removesuffix("s")) or WORDS.get(low.removesuffix("es"))
+    return (
+        UNITS_BY_SYMBOL.get(text)
+        or UNITS_BY_WORD.get(low)
+        or UNITS_BY_WORD.get(low.removesuffix("s"))
+        or UNITS_BY_WORD.get(low.removesuffix("es"))
+    )
 
 
 def split_name(cell: str, where: str) -> tuple[str, Unit | None]:
-    """CH1(mV) -> CH1 and the unit; without a unit None. InputError for one that is not known."""
+    """Name and unit of a cell of the header: CH1(mV) -> CH1 and mV; the unit is None without one. InputError."""
     text = cell.strip()
     name, unit = _split(text, where)
     if FACTOR.search(name):
@@ -133,20 +138,20 @@ def _split(text: str, where: str) -> tuple[str, Unit | None]:
         return inside[1] or text, known_unit(inside[2], inside[1] or "")
     for mark in "/_ ":
         head, _, tail = (part.strip() for part in text.rpartition(mark))
-        if head and tail and (_is_meant(head, tail, mark) or (mark != " " and _is_current(head, tail))):
+        if head and tail and (_is_unit_of_name(head, tail, mark) or (mark != " " and _is_current(head, tail))):
             return head, unit_of(tail, head, where)
     glued = re.fullmatch(r"(CH\d)([nu\u00b5\u03bcmk]?V)", text)  # of Rigol's newer instruments
     if glued:
         return glued[1], known_unit(glued[2])
-    if NAMED_CURRENT.search(text):
+    if CURRENT_NAME.search(text):
         raise InputError(f"{where}: column '{text[:40]}' is a current: no channel of a recording; leave it out")
     return text, None
 
 
-def _is_meant(head: str, tail: str, mark: str) -> bool:
-    """Whether the end of a name is its unit: one of what the name says, and where that is nothing no word."""
+def _is_unit_of_name(head: str, tail: str, mark: str) -> bool:
+    """Whether the end of a column's name is its unit: one of the quantity that the name states, or else not a word."""
     unit = known_unit(tail, head)
-    said = {base for base, words in QUANTITIES.items() if words.search(head)}
+    said = {base for base, words in QUANTITY_NAMES.items() if words.search(head)}
     if unit is None or mark == "/":
         return unit is not None and not _is_quotient(head, unit)
     return unit.base in said if said else mark == "_" and tail not in ALSO_WORDS
@@ -160,8 +165,8 @@ def _is_quotient(head: str, unit: Unit) -> bool:
 
 
 def _is_current(head: str, tail: str) -> bool:
-    """Whether I_mA is meant, and not channel_A."""
-    return CURRENT.fullmatch(tail) is not None and re.fullmatch(r"(?:ch|channel)\s*", head, re.IGNORECASE) is None
+    """Whether the end of a name is a unit of current: of I_mA, but not of channel_A."""
+    return CURRENT_UNIT.fullmatch(tail) is not None and re.fullmatch(r"(?:ch|channel)\s*", head, re.IGNORECASE) is None
 
 
 SCOPE_CHANNEL = re.compile(
@@ -171,8 +176,8 @@ SCOPE_CHANNEL = re.compile(
 )
 
 
-def usual_unit(name: str, where: str) -> Unit:
-    """Of a column without any: volts for channels that are named as oscilloscopes do. InputError for another."""
+def assumed_unit(name: str, where: str) -> Unit:
+    """The unit of a column without one: volts for channels named as oscilloscopes do. InputError for any other."""
     if SCOPE_CHANNEL.fullmatch(name.strip()):
         return Unit("V", 1.0)
     raise InputError(

@@ -382,7 +382,7 @@ def test_nothing_but_an_input_error_leaves_readers_of_binary_files(name, tmp_pat
 def test_every_ending_that_is_offered_has_a_reader(tmp_path, monkeypatch):
     """All binary files go to a process of their own."""
     asked = []
-    monkeypatch.setattr(files, "read_apart", lambda kind, file: asked.append((kind, file.suffix)) or {})
+    monkeypatch.setattr(files, "read_in_own_process", lambda kind, file: asked.append((kind, file.suffix)) or {})
     with pytest.raises(InputError, match="must end with one of") as caught:
         read_log(tmp_path / "a.doc")
     endings = re.findall(r"\.\w+", str(caught.value).partition("must end with one of")[2].partition(";")[0])
