@@ -14,7 +14,7 @@ import numpy as np
 from benchmarks.timing import Table, file_argument
 from softdot.case import Case
 from softdot.summary import press_part
-from softdot.tolerances.discretisation import RATIOS, Answers, answers_of, discretisation_error
+from softdot.tolerances.discretisation import SIZE_RATIOS, Answers, answers_from_summary, discretisation_error
 
 FOUR_TIMES = {"solid": 4.0 ** (-1.0 / 3.0), "plane-strain": 4.0 ** (-1.0 / 2.0)}
 MEDIA = ("vnr", "vnr-soft", "ecoflex-00-30", "ecoflex-00-50", "dragon-skin-30", "rtv615")
@@ -80,7 +80,7 @@ def pressed(tables: dict[str, Any], factor: float) -> tuple[list[float], int]:
     result = case.solve()
     if not result.converged:
         raise SystemExit(f"{tables}: {result.failure}")
-    found = answers_of(press_part(case.model, result, case.course(result)))
+    found = answers_from_summary(press_part(case.model, result, case.course(result)))
     return [float(found.force_N[-1]), *map(float, found.electrode_voltages_V[-1])], result.unknowns
 
 
@@ -92,7 +92,7 @@ def answers(row: dict, mesh: str) -> Answers:
 
 def errors(row: dict) -> set[tuple[float, float]]:
     """Stated and true error in percent of force and voltages; mirrored electrodes count once."""
-    stated = discretisation_error(answers(row, "1"), {ratio: answers(row, f"{ratio:g}") for ratio in RATIOS})
+    stated = discretisation_error(answers(row, "1"), {ratio: answers(row, f"{ratio:g}") for ratio in SIZE_RATIOS})
     true = 100.0 * np.abs(np.array(row["1"]) / np.array(row["reference"]) - 1.0)
     both = zip([stated.force_percent, *stated.electrodes_percent], true, strict=True)
     return {(round(float(one), 6), round(float(other), 6)) for one, other in both}
@@ -122,7 +122,7 @@ def main(path: Path, first: int = 40, count: int = 40) -> None:
             "boundary": tables["segment"]["boundary"],
             "shape": tables["segment"].get("effector", {}).get("shape"),
         }
-        factors = {"1": 1.0, **{f"{ratio:g}": ratio for ratio in RATIOS}, "reference": FOUR_TIMES[row["section"]]}
+        factors = {"1": 1.0, **{f"{ratio:g}": ratio for ratio in SIZE_RATIOS}, "reference": FOUR_TIMES[row["section"]]}
         for name, factor in factors.items():
             row[name], row[f"{name} unknowns"] = pressed(tables, factor)
         table.add(row)

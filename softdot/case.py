@@ -100,9 +100,9 @@ class Case(PreparedPress):
     @cached_property
     def sized(self) -> Config:
         """The configuration with the element sizes that mesh.accuracy_percent asks for. InputError."""
-        from softdot.tolerances.accuracy import sized
+        from softdot.tolerances.accuracy import with_sizes_for_accuracy
 
-        return sized(self.config)
+        return with_sizes_for_accuracy(self.config)
 
     def uncertainty(self, summary: dict[str, Any]) -> dict[str, Any]:
         """How far the last force and voltage of a summary can be trusted."""

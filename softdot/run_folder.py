@@ -82,7 +82,7 @@ def _fill(
     from mesh.types import MeshingError
     from softdot.config.loading import unused_material_warnings
     from softdot.summary import heading, mesh_part, press_part, stopped_solver
-    from softdot.tolerances.uncertainty import prepare, uncertainty
+    from softdot.tolerances.uncertainty import fill_cache, uncertainty
     from solve.fem.warm_up import compile_cheap
 
     clock, config, model = StageClock(), case.config, case.model
@@ -94,7 +94,7 @@ def _fill(
     try:
         with clock("mesh"):
             # a slice is pressed before another process has loaded the solver
-            ahead = ask(prepare, case.sized) if config.segment.section == "solid" else None
+            ahead = ask(fill_cache, case.sized) if config.segment.section == "solid" else None
             ask(warm_drawing)
             quality = case.mesh_quality
     except MeshingError as error:

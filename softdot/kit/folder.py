@@ -30,8 +30,8 @@ from softdot.output import Product, staged_folder
 from softdot.prepared_press import PreparedPress
 from softdot.progress import Logged, Progress
 from softdot.system_libraries import named_when_missing
-from softdot.tolerances.budget import budget_of
-from softdot.tolerances.budget_outcome import UNFINISHED, BudgetOutcome, failed
+from softdot.tolerances.budget import tolerance_budget
+from softdot.tolerances.budget_outcome import UNFINISHED, BudgetOutcome, failed_budget
 from solve.materials.parameters import PiezoelectricFilm
 from solve.solution.full_load import StoppedShortError
 from solve.solution.linear import LinearSolveError
@@ -150,12 +150,12 @@ def _pressed_segment(config: Config) -> str:
 def _outcome(config: Config, progress: Progress, executor: Executor) -> BudgetOutcome:
     """The tolerance budget, or why there is none."""
     try:
-        budget = budget_of(budget_config(config), progress.step, executor)
+        budget = tolerance_budget(budget_config(config), progress.step, executor)
         return BudgetOutcome("complete", budget=plain(budget.as_dict()))
     except AwayError:
         raise
     except (InputError, LinearSolveError, MeshingError, StoppedShortError) as error:
-        return failed(error)
+        return failed_budget(error)
 
 
 def _write_parts(contents: Contents, folder: Path) -> None:

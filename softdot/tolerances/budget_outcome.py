@@ -1,4 +1,4 @@
-"""What became of a tolerance budget: done, unfinished, or failed and why."""
+"""How the calculation of a tolerance budget ended: complete, unfinished or failed, and why."""
 
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -10,7 +10,9 @@ from solve.solution.linear import LinearSolveError
 
 @dataclass(frozen=True)
 class BudgetOutcome:
-    """state : "unfinished" while it is computed and after an interrupt. budget : as in kit.json. note : for the bench,
+    """How the calculation of a tolerance budget ended.
+
+    state : "unfinished" while it runs and after an interrupt. budget : as in kit.json. note : for the build sheet,
     where there is no budget. failure : for kit.json and the command line, in the solver's own words.
     """
 
@@ -28,8 +30,8 @@ UNFINISHED = BudgetOutcome(
 )
 
 
-def failed(error: Exception) -> BudgetOutcome:
-    """Of a budget that ended in an error."""
+def failed_budget(error: Exception) -> BudgetOutcome:
+    """The outcome of a budget whose calculation ended in an error."""
     return BudgetOutcome(
         "failed",
         note=f"There is no tolerance budget, because {_reason(error)}. Everything else on this page is complete and "
@@ -40,6 +42,7 @@ def failed(error: Exception) -> BudgetOutcome:
 
 
 def _reason(error: Exception) -> str:
+    """The cause of an error in words for the build sheet."""
     if isinstance(error, StoppedShortError):
         return "the simulated press did not reach its full load"
     if isinstance(error, MeshingError):

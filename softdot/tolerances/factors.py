@@ -12,6 +12,7 @@ FACTORS: dict[str, tuple[str, ...]] = {
     "medium2": MEDIUM,
     "dot": ("radius_factor",),
 }
+"""Component -> its factors of a property error."""
 
 
 def with_factors(config: Config) -> Config:
@@ -39,4 +40,5 @@ def has_component(config: Config, component: str) -> bool:
 
 
 def _components(config: Config) -> list[str]:
+    """The names of the components in FACTORS that a configuration has."""
     return [name for name in FACTORS if has_component(config, name)]

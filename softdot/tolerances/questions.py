@@ -1,4 +1,4 @@
-"""Responses and derivatives that are asked of other processes, a press each."""
+"""Responses and derivatives that other processes calculate, one press each."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
@@ -8,12 +8,12 @@ from foundation.executor import Executor, completed_calls
 from softdot.config.schema import Config
 from softdot.json_files import plain
 from softdot.tolerances.factors import with_factors
-from softdot.tolerances.responses import KitPress, Response, name_of, on_mesh_of, slopes_by
+from softdot.tolerances.responses import KitPress, Response, moved_label, response_name, slopes_label
 
 
 class Question(NamedTuple):
-    """What another process is asked of the press of a configuration: its derivatives by keys, or, where that is given,
-    the response of a configuration that was moved.
+    """A request for the press of a configuration: its derivatives by keys or, where that is given, the response of a
+    moved configuration.
     """
 
     config: Config
@@ -21,53 +21,53 @@ class Question(NamedTuple):
     moved: Config | None = None
 
     def answer(self) -> Any:
-        """As KitPress.slopes or KitPress.value, by the press that was asked last in this process where it fits."""
+        """The result of KitPress.slopes or KitPress.value, by the last press of this process where that fits."""
         press = kept_press(self.config)
         return press.slopes(self.keys) if self.moved is None else press.value(self.moved)
 
-    def recalled(self) -> Any | None:
-        """The answer to an earlier question."""
+    def stored_answer(self) -> Any | None:
+        """The answer to an earlier equal question, None where there was none."""
         known = recall(self._name)
         if known is None or self.moved is not None:
             return None if known is None else Response(*known)
         return Response(*known[0]), {key: Response(*pair) for key, pair in known[1].items()}
 
     def keep(self, answer: Any) -> None:
-        """Have it recalled here where it was given elsewhere."""
+        """Store an answer that another process gave, unless it is stored."""
         if recall(self._name) is None:
             remember(self._name, plain(answer))
 
     @property
     def _name(self) -> str:
         if self.moved is None:
-            return name_of(with_factors(self.config), slopes_by(self.keys))
-        return name_of(self.moved, on_mesh_of(self.config))
+            return response_name(with_factors(self.config), slopes_label(self.keys))
+        return response_name(self.moved, moved_label(self.config))
 
 
-_LAST: list[KitPress] = []
-"""Of this process: what a press beside the last one begins from. More would be memory that nobody uses."""
+_LAST_PRESS: list[KitPress] = []
+"""The last press of this process, at most one: a moved configuration begins from it. More would waste memory."""
 
 
 def kept_press(config: Config) -> KitPress:
     """The press that was asked for last in this process, or a new one."""
-    if not _LAST or _LAST[0].config != config:
-        _LAST[:] = [KitPress(config)]
-    return _LAST[0]
+    if not _LAST_PRESS or _LAST_PRESS[0].config != config:
+        _LAST_PRESS[:] = [KitPress(config)]
+    return _LAST_PRESS[0]
 
 
-def answered(
+def answer_all(
     questions: Mapping[str, Question], executor: Executor, told: Callable[[int, int, str], None]
 ) -> dict[str, Any]:
-    """The answer to each question by its name; told : how many are there, of how many, and the name of the last one.
+    """The answer to each question by its name. InputError, MeshingError, LinearSolveError, StoppedShortError.
 
-    InputError, MeshingError, LinearSolveError, StoppedShortError.
+    told : called with the number of answers so far, their total, and the name of the last one.
     """
-    found = {name: known for name, one in questions.items() if (known := one.recalled()) is not None}
+    found = {name: known for name, one in questions.items() if (known := one.stored_answer()) is not None}
     missing = {name: (one,) for name, one in questions.items() if name not in found}
     told(len(found), len(questions), "")
     for name, future in completed_calls(executor, Question.answer, missing):
         found[name] = future.result()
         questions[name].keep(found[name])
         told(len(found), len(questions), name)
-    _LAST.clear()  # where the executor is this process
+    _LAST_PRESS.clear()  # where the executor is this process
     return found

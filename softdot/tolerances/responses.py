@@ -1,5 +1,5 @@
 """Force and voltage at the deepest step, their derivatives, and their values at the ends of a shift. Where the path of
-a press does not matter and its voltage is open-circuit, its full load is all that is solved.
+a press does not matter and its voltage is open-circuit, only its full load is solved.
 """
 
 from collections.abc import Callable, Sequence
@@ -25,8 +25,8 @@ from softdot.tolerances.factors import with_factors
 from solve.result import PressResult
 from solve.solution.full_load import FullLoad, StoppedShortError
 
-LOAD_STEPS = 3
-"""Enough for the march; what is asked for is the deepest step alone."""
+MOST_LOAD_STEPS = 3
+"""Enough load steps for Newton's method; only the deepest one is asked for."""
 
 
 class Response(NamedTuple):
@@ -36,25 +36,27 @@ class Response(NamedTuple):
     voltage: float
 
 
-def coarser(config: Config, factor: float) -> Config:
-    """The press in fewer steps on elements that are larger by the factor; never on the mesh of a file."""
-    press = config.press.model_copy(update={"load_steps": min(config.press.load_steps, LOAD_STEPS)})
-    return on_larger_elements(config, factor).model_copy(update={"press": press})
+def coarser_press(config: Config, factor: float) -> Config:
+    """The configuration in fewer load steps and on elements that are larger by a factor; never on the mesh of a
+    file.
+    """
+    press = config.press.model_copy(update={"load_steps": min(config.press.load_steps, MOST_LOAD_STEPS)})
+    return with_larger_elements(config, factor).model_copy(update={"press": press})
 
 
-def on_larger_elements(config: Config, factor: float) -> Config:
-    """The same on elements that are larger by the factor; never on the mesh of a file."""
+def with_larger_elements(config: Config, factor: float) -> Config:
+    """The configuration on elements that are larger by a factor; never on the mesh of a file."""
     options = config.mesh.scale_sizes(factor).model_copy(update={"file": None})
     return config.model_copy(update={"mesh": options})
 
 
-def mesh_of(config: Config) -> TetMesh:
-    """The mesh that is solved of a configuration. InputError, MeshingError."""
+def solved_mesh(config: Config) -> TetMesh:
+    """The mesh on which a configuration is solved. InputError, MeshingError."""
     return PreparedPress(config).solved_mesh
 
 
 class FullLoadResponse(NamedTuple):
-    """At full load: the response, the voltage of each electrode alone, and the derivatives of the response by key."""
+    """The response at full load, the voltage of each electrode alone, and the derivatives of the response by key."""
 
     nominal: Response
     electrode_voltages_V: tuple[float, ...]
@@ -62,7 +64,7 @@ class FullLoadResponse(NamedTuple):
 
 
 class KitPress:
-    """A configuration, pressed on one mesh when first asked for; every answer is kept on disk."""
+    """A configuration that is pressed on one mesh when first asked for; every answer is kept on disk."""
 
     def __init__(self, config: Config) -> None:
         self.config = config
@@ -71,28 +73,28 @@ class KitPress:
         """The response and its derivative by each key of the configuration with factors. InputError, MeshingError,
         LinearSolveError, StoppedShortError.
         """
-        found = remembered(with_factors(self.config), slopes_by(keys), lambda: self._slopes(keys))
+        found = kept_on_disk(with_factors(self.config), slopes_label(keys), lambda: self._slopes(keys))
         return Response(*found[0]), {key: Response(*pair) for key, pair in found[1].items()}
 
     def full_load(self, keys: Sequence[str]) -> FullLoadResponse:
-        """Force and open-circuit voltages at full load, before any slide, with their slopes; no amplifier.
+        """Force and open-circuit voltages at full load, before any slide and without amplifier, with their slopes.
 
-        InputError also where the path of the press matters; else as for slopes.
+        InputError also where the path of the press matters; other errors as in slopes.
         """
         changed = with_factors(self.config)
-        voltages, nominal, slopes = remembered(changed, f"full load {keys}", lambda: self._at_full_load(keys))
+        voltages, nominal, slopes = kept_on_disk(changed, f"full load {keys}", lambda: self._at_full_load(keys))
         by_key = {key: Response(*pair) for key, pair in slopes.items()}
         return FullLoadResponse(Response(*nominal), tuple(voltages), by_key)
 
     def value(self, moved: Config) -> Response:
-        """The response of a changed configuration, on the mesh of the unchanged one so that the mesh does not blur the
-        difference. Errors as for slopes.
+        """The response of a moved configuration, on the mesh of the unmoved one so that meshes do not blur the
+        difference. Errors as in slopes.
         """
-        return Response(*remembered(moved, on_mesh_of(self.config), lambda: self._value(moved)))
+        return Response(*kept_on_disk(moved, moved_label(self.config), lambda: self._value(moved)))
 
     @cached_property
     def _mesh(self) -> TetMesh:
-        return mesh_of(self.config)
+        return solved_mesh(self.config)
 
     @cached_property
     def _full_load(self) -> FullLoad:
@@ -131,7 +133,7 @@ def path_matters(config: Config) -> bool:
 def slopes_along(config: Config, keys: Sequence[str], tet_mesh: TetMesh) -> tuple[Response, dict[str, Response]]:
     """The response and its derivative by each key, along the whole press. InputError, StoppedShortError."""
     result, found = press_with_derivatives(config, keys, tet_mesh)
-    response, step = _response(config, result), _deepest(result)
+    response, step = _response(config, result), _deepest_step(result)
     at = int(np.argmin(np.abs(found[0].time_s - result.steps[step].time_s)))
     by_key = {}
     for one in found:
@@ -145,24 +147,26 @@ def value_along(config: Config, tet_mesh: TetMesh) -> Response:
     return _response(config, PreparedPress(config).solve(tet_mesh=tet_mesh))
 
 
-def slopes_by(keys: Sequence[str]) -> str:
-    """What was asked where derivatives were."""
+def slopes_label(keys: Sequence[str]) -> str:
+    """The words for derivatives by keys, as part of the name under which they are kept."""
     return f"slopes {list(keys)}"
 
 
-def on_mesh_of(config: Config) -> str:
-    """What was asked where a moved configuration was pressed."""
+def moved_label(config: Config) -> str:
+    """The words for the response of a moved configuration on another one's mesh, as part of the name of what is
+    kept.
+    """
     return f"on the mesh of {config_hash(config)}"
 
 
-def name_of(config: Config, what: str) -> str:
-    """Under which an answer is kept."""
+def response_name(config: Config, what: str) -> str:
+    """The name under which an answer is kept."""
     return f"response-{data_hash([what, input_hash(config), source_hash(__name__)])}"
 
 
-def remembered(config: Config, what: str, make: Callable[[], Any]) -> Any:
-    """Plain numbers kept on disk under the hash of a configuration, of the program and of what was asked."""
-    name = name_of(config, what)
+def kept_on_disk(config: Config, what: str, make: Callable[[], Any]) -> Any:
+    """Plain numbers from the cache on disk, or from make, then kept there under configuration, program and label."""
+    name = response_name(config, what)
     known = recall(name)
     if known is None:
         known = make()
@@ -175,10 +179,10 @@ def _response(config: Config, result: PressResult) -> Response:
         raise StoppedShortError(result.failure)
     along = PreparedPress(config).course(result)
     voltage = history(result).open_circuit_voltage_V if along.together_V is None else along.together_V[along.solved]
-    step = _deepest(result)
+    step = _deepest_step(result)
     return Response(result.steps[step].reaction_force_N, float(voltage[step]))
 
 
-def _deepest(result: PressResult) -> int:
-    """Of equally deep steps the first."""
+def _deepest_step(result: PressResult) -> int:
+    """The number of the deepest step, the first of equally deep ones."""
     return int(np.argmax(np.round([step.indentation_m for step in result.steps], 12)))

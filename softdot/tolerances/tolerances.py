@@ -1,4 +1,4 @@
-"""What may be off by how much: one row for each quantity of a segment."""
+"""The tolerances of a segment: one row for each quantity that may be off."""
 
 import tomllib
 from collections.abc import Mapping
@@ -14,17 +14,18 @@ from geometry.stack import Layer, layers
 from softdot.config.schema import Config
 from softdot.tolerances.factors import factor_key
 
-NAMES = {"medium1": "medium 1", "medium2": "medium 2"}
-SMALL = 1e-6
+LAYER_NAMES = {"medium1": "medium 1", "medium2": "medium 2"}
+DIFFERENCE_STEP_MM = 1e-6
+"""Step of the central differences of a dot's radius."""
 
 
 @dataclass(frozen=True)
 class Tolerance:
     """A quantity and how far it may be off.
 
-    nominal, plus_minus : in unit; unit "%" is of the nominal value, which is then None.
-    slopes : key of the configuration -> change of that key per unit of the quantity.
-    counted : False where another row holds the same error; note : what else is to be known.
+    nominal, plus_minus : in unit; unit "%" is of the nominal value, which is then None. slopes : key of the
+    configuration -> change of that key per unit of the quantity. counted : False where another row holds the same
+    error. note : a remark for the reader.
     """
 
     label: str
@@ -42,7 +43,7 @@ def tolerances(config: Config) -> list[Tolerance]:
     """All quantities that change the press to first order."""
     return [
         *_thicknesses(config),
-        *_moduli(config, _poured(config)),
+        *_moduli(config, _cast_materials(config)),
         *_film(config),
         *_dot(config),
         *([] if config.segment.film.electrodes else _footprint(config.segment)),
@@ -52,14 +53,14 @@ def tolerances(config: Config) -> list[Tolerance]:
 
 
 def material_tolerances(config: Config) -> list[Tolerance]:
-    """What the constants of the stated materials are known to."""
+    """The tolerances of the constants of the stated materials."""
     return [*_moduli(config, {}), *_film(config)]
 
 
 def shifts(config: Config) -> list[tuple[Tolerance, Config, Config]]:
     """Quantities whose effect has no useful derivative, each with the configuration at its upper and lower end.
 
-    By symmetry it vanishes to first order, or electrodes of their own have edges that pass whole points of the mesh.
+    Their effect vanishes to first order by symmetry, or the edges of electrodes would pass whole points of the mesh.
     """
     offset, angle = table()["dot"]["offset"], table()["film"]["draw_angle"]
     axes = (0,) if config.segment.section == "plane-strain" else (0, 1)
@@ -67,19 +68,21 @@ def shifts(config: Config) -> list[tuple[Tolerance, Config, Config]]:
     for axis in () if config.dot.shape == "plate" else axes:
         nominal = config.dot.offset_mm[axis]
         row = _row(f"dot offset in {'xy'[axis]}", nominal, offset["mm"], "mm", offset)
-        found.append((row, _offset(config, axis, offset["mm"]), _offset(config, axis, -offset["mm"])))
+        found.append((row, _with_moved_dot(config, axis, offset["mm"]), _with_moved_dot(config, axis, -offset["mm"])))
     film = config.segment.film
     row = _row("draw direction of the film", film.draw_angle_deg, angle["deg"], "°", angle)
-    found.append((row, _turned(config, angle["deg"]), _turned(config, -angle["deg"])))
+    found.append((row, _with_turned_film(config, angle["deg"]), _with_turned_film(config, -angle["deg"])))
     for row in _footprint(config.segment) if film.electrodes else []:
         ((key, _),) = row.slopes.items()
-        found.append((row, _resized(config, key, row.plus_minus), _resized(config, key, -row.plus_minus)))
+        found.append(
+            (row, _with_other_size(config, key, row.plus_minus), _with_other_size(config, key, -row.plus_minus))
+        )
     return found
 
 
 @cache
 def table() -> dict[str, Any]:
-    """The table of tolerances."""
+    """The content of tolerances.toml."""
     return tomllib.loads(files(__package__).joinpath("tolerances.toml").read_text("utf-8"))
 
 
@@ -96,8 +99,8 @@ def _row(
     return Tolerance(label, nominal, plus_minus, unit, source, entry["confidence"], slopes or {}, **more)
 
 
-def _share(label: str, entry: Mapping[str, Any], key: str, value: float = 1.0) -> Tolerance:
-    """A share of the nominal value of a key, in percent."""
+def _percent_row(label: str, entry: Mapping[str, Any], key: str, value: float = 1.0) -> Tolerance:
+    """A tolerance in percent of the nominal value of a key."""
     return _row(label, None, 100 * entry["share"], "%", entry, {key: value / 100})
 
 
@@ -109,7 +112,7 @@ def _thicknesses(config: Config) -> list[Tolerance]:
         nominal = scale * layer.thickness_mm
         plus_minus = scale * entry["mm"] if "mm" in entry else entry["share"] * nominal
         key = factor_key(config, layer.name, "thickness_factor")
-        found.append(_row(f"thickness of {_name(layer)}", nominal, plus_minus, unit, entry, {key: 1.0 / nominal}))
+        found.append(_row(f"thickness of {_layer_name(layer)}", nominal, plus_minus, unit, entry, {key: 1.0 / nominal}))
     return found
 
 
@@ -120,17 +123,22 @@ def _process(layer: str, config: Config) -> str:
     return "sheet" if cut else f"cast-{config.fabrication.printer}"
 
 
-def _poured(config: Config) -> dict[str, str]:
+def _cast_materials(config: Config) -> dict[str, str]:
+    """Layer -> the material that its recipe casts, for the layers that are cast."""
     return {one.name: one.recipe.name for one in cast_components(config.segment, config.fabrication)}
 
 
 def _moduli(config: Config, poured: Mapping[str, str]) -> list[Tolerance]:
-    """Of the materials of the layers. poured : layer -> what is cast in place of the material of the configuration."""
+    """Tolerances of the moduli of the layers. poured : layer -> the material that is cast in place of the stated
+    one.
+    """
     found = []
     for layer in reversed(layers(config.segment)):
         material = poured.get(layer.name, layer.material)
         entry = table()["film"]["modulus"] if layer.name == "film" else _modulus_entry(material)
-        found.append(_share(f"modulus of {_name(layer)}", entry, factor_key(config, layer.name, "modulus_factor")))
+        found.append(
+            _percent_row(f"modulus of {_layer_name(layer)}", entry, factor_key(config, layer.name, "modulus_factor"))
+        )
     return found
 
 
@@ -153,14 +161,14 @@ def _film(config: Config) -> list[Tolerance]:
         raised, counted=False, note=note,
     )  # fmt: skip
     return [
-        _share("piezoelectric constants of the film", rows["d31"], factor_key(config, "film", "d31_factor")),
-        _share("permittivity of the film", rows["permittivity"], permittivity, nominal),
+        _percent_row("piezoelectric constants of the film", rows["d31"], factor_key(config, "film", "d31_factor")),
+        _percent_row("permittivity of the film", rows["permittivity"], permittivity, nominal),
         height,
     ]
 
 
 def _dot(config: Config) -> list[Tolerance]:
-    """A dot that is higher by h on a plate that stops at the same place is pressed in deeper by h."""
+    """Tolerances of the dot's size. A higher dot on a plate that stops at the same height is also pressed in deeper."""
     dot = config.dot
     if dot.shape == "plate":
         return []
@@ -178,8 +186,8 @@ def _dot(config: Config) -> list[Tolerance]:
             dot_size_from_base(diameter + d, size.height_mm + h).radius_mm
             - dot_size_from_base(diameter - d, size.height_mm - h).radius_mm
         )
-        / (2 * SMALL * size.radius_mm)
-        for d, h in ((0.0, SMALL), (SMALL, 0.0))
+        / (2 * DIFFERENCE_STEP_MM * size.radius_mm)
+        for d, h in ((0.0, DIFFERENCE_STEP_MM), (DIFFERENCE_STEP_MM, 0.0))
     )
     note = "its plate stops at the same height, so that a higher dot also goes in deeper" if deeper else ""
     return [
@@ -197,7 +205,7 @@ def _base_diameter(dot: Dot) -> float:
 
 
 def _dot_entry(dot: Dot, quantity: Any, name: str) -> Mapping[str, Any]:
-    """Half the range that the dot's standard allows, or the table's own number."""
+    """The tolerance that the dot's standard allows, half its range, or else the table's own number."""
     chosen = dot_standard(dot)
     size = None if chosen is None else chosen.quantities[quantity]
     if size is None or size.minimum_mm is None or size.maximum_mm is None or size.minimum_mm == size.maximum_mm:
@@ -217,50 +225,53 @@ def _footprint(segment: Segment) -> list[Tolerance]:
 def _press(config: Config) -> Tolerance:
     press, rows = config.press, table()["press"]
     if press.force_N is not None:
-        return _share("force of the press", rows["force"], "press.force_N", press.force_N)
+        return _percent_row("force of the press", rows["force"], "press.force_N", press.force_N)
     depth = rows["depth"]
     return _row("depth of the press", press.depth_mm, depth["mm"], "mm", depth, {"press.indentation_mm": 1.0})
 
 
 def _interfaces(config: Config) -> list[Tolerance]:
-    """Bonds, elastic sides and the cable, where the configuration has them."""
+    """Tolerances of bonds, elastic sides and the cable, where the configuration has them."""
     segment, rows, found = config.segment, table()["interfaces"], []
     for number, bond in enumerate(segment.bonds):
         for way in ("normal", "shear"):
             name = f"{way}_stiffness_N_per_mm3"
             label = f"{way} stiffness of the bond {bond.between[0]}–{bond.between[1]}"
-            found.append(_share(label, rows["bonds"], f"segment.bonds[{number}].{name}", getattr(bond, name)))
+            found.append(_percent_row(label, rows["bonds"], f"segment.bonds[{number}].{name}", getattr(bond, name)))
     if segment.boundary == "elastic" and segment.side_stiffness_N_per_mm3 > 0.0:
         key = "segment.side_stiffness_N_per_mm3"
-        found.append(_share("stiffness of the sides", rows["sides"], key, segment.side_stiffness_N_per_mm3))
+        found.append(_percent_row("stiffness of the sides", rows["sides"], key, segment.side_stiffness_N_per_mm3))
     readout = config.readout
     if readout is not None and readout.mode == "voltage" and readout.input_capacitance_pF > 0.0:
         key, entry = "readout.input_capacitance_pF", rows["cable_capacitance"]
-        found.append(_share("capacitance of cable and amplifier", entry, key, readout.input_capacitance_pF))
+        found.append(_percent_row("capacitance of cable and amplifier", entry, key, readout.input_capacitance_pF))
     return found
 
 
-def _name(layer: Layer) -> str:
-    return NAMES.get(layer.name, f"the {layer.name}")
+def _layer_name(layer: Layer) -> str:
+    return LAYER_NAMES.get(layer.name, f"the {layer.name}")
 
 
-def _offset(config: Config, axis: int, by_mm: float) -> Config:
+def _with_moved_dot(config: Config, axis: int, by_mm: float) -> Config:
+    """The configuration with its dot moved along x (axis 0) or y (axis 1)."""
     place = list(config.dot.offset_mm)
     place[axis] += by_mm
-    return config.model_copy(update={"dot": _copy(config.dot, offset_mm=tuple(place))})
+    return config.model_copy(update={"dot": _with_changes(config.dot, offset_mm=tuple(place))})
 
 
-def _turned(config: Config, by_deg: float) -> Config:
+def _with_turned_film(config: Config, by_deg: float) -> Config:
+    """The configuration with the draw direction of its film turned."""
     film = config.segment.film
-    film = _copy(film, draw_angle_deg=film.draw_angle_deg + by_deg)
-    return config.model_copy(update={"segment": _copy(config.segment, film=film)})
+    film = _with_changes(film, draw_angle_deg=film.draw_angle_deg + by_deg)
+    return config.model_copy(update={"segment": _with_changes(config.segment, film=film)})
 
 
-def _resized(config: Config, key: str, by_mm: float) -> Config:
+def _with_other_size(config: Config, key: str, by_mm: float) -> Config:
+    """The configuration with another length or width of the segment."""
     name = key.removeprefix("segment.")
-    segment = _copy(config.segment, **{name: getattr(config.segment, name) + by_mm})
+    segment = _with_changes(config.segment, **{name: getattr(config.segment, name) + by_mm})
     return config.model_copy(update={"segment": segment})
 
 
-def _copy(model: Any, **changes: Any) -> Any:
+def _with_changes(model: Any, **changes: Any) -> Any:
     return model.model_copy(update=changes)

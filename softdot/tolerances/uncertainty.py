@@ -1,10 +1,10 @@
-"""How far force and voltage of a run can be trusted: mesh, mesher and what the materials are known to.
+"""How far force and voltage of a run can be trusted, given mesh, mesher and tolerances of the materials.
 
-To first order: each constant of a material, off by what is stated of it, moves the response along its derivative
+To first order: each constant of a material, off by its stated tolerance, moves the response along its derivative
 (ISO/IEC Guide 98-3, 2008, clause 5.1.2). The derivatives come from the same press on elements twice as large, at its
-full load alone, which also tells the discretisation error (softdot.tolerances.discretisation). All parts are taken as
+full load alone, which also gives the discretisation error (softdot.tolerances.discretisation). All parts are taken as
 independent, and their squares added. Where a part is missing there is no sum: the mesh alone is far less than the
-materials do.
+effect of the materials.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -16,12 +16,12 @@ from foundation.errors import InputError
 from mesh.types import MeshingError
 from softdot.config.schema import Config
 from softdot.tolerances.discretisation import (
-    RATIOS,
+    SIZE_RATIOS,
     Answers,
     DiscretisationError,
     along_path,
-    answer_at,
-    answers_of,
+    answers_at_full_load,
+    answers_from_summary,
     discretisation_error,
     follows_path,
     full_load,
@@ -31,8 +31,8 @@ from softdot.tolerances.tolerances import Tolerance, material_tolerances
 from solve.solution.full_load import StoppedShortError
 from solve.solution.linear import LinearSolveError
 
-UNSOLVED = InputError, LinearSolveError, MeshingError, StoppedShortError
-LOST = {
+PRESS_ERRORS = InputError, LinearSolveError, MeshingError, StoppedShortError
+MISSING_NOTES = {
     "path": "what the tolerances of the materials do is not estimated here, since this press depends on its path; "
     "softdot kit calculates it",
     "slide": "what the tolerances of the materials do is not estimated here, since the dot slides after it is pressed "
@@ -40,6 +40,7 @@ LOST = {
     "failed": "what the tolerances of the materials and the mesh do could not be estimated: the press on larger "
     "elements failed",
 }
+"""Reason why a part is missing -> the note that says so."""
 
 
 def uncertainty(config: Config, summary: Mapping[str, Any]) -> dict[str, Any]:
@@ -49,80 +50,90 @@ def uncertainty(config: Config, summary: Mapping[str, Any]) -> dict[str, Any]:
     and voltage_percent; note says what is missing, and then there is no sum. A run whose force or voltage is zero has
     no percentages.
     """
-    found, given = answers_of(summary), config.press.force_N is not None
+    found, given = answers_from_summary(summary), config.press.force_N is not None
     if found.force_N[-1] == 0.0 or found.voltage_V[-1] == 0.0:
         return {}
     try:
-        parts, larger, note = _estimated(config, given)
-    except UNSOLVED:
-        return {"uncertainty": {"parts": [], "note": LOST["failed"]}}
+        parts, larger, note = _estimate_parts(config, given)
+    except PRESS_ERRORS:
+        return {"uncertainty": {"parts": [], "note": MISSING_NOTES["failed"]}}
     error = discretisation_error(found, larger)
-    percent = _known_force((error.force_percent, error.voltage_percent), given)
+    percent = _without_given_force((error.force_percent, error.voltage_percent), given)
     times = " and ".join(f"{ratio:g}" for ratio in larger)
-    parts.append(_named("mesh", f"the same press on elements {times} times as large", percent))
+    parts.append(_part_table("mesh", f"the same press on elements {times} times as large", percent))
     return {
-        "discretisation_error": _told(error, percent, [one["name"] for one in summary["electrodes"]]),
-        "uncertainty": {**(_together(parts) if note is None else {}), "parts": parts, "note": note},
+        "discretisation_error": _error_table(error, percent, [one["name"] for one in summary["electrodes"]]),
+        "uncertainty": {**(_root_sum_square(parts) if note is None else {}), "parts": parts, "note": note},
     }
 
 
-def _told(error: DiscretisationError, percent: tuple[float, float], electrodes: Sequence[str]) -> dict[str, Any]:
+def _error_table(error: DiscretisationError, percent: tuple[float, float], electrodes: Sequence[str]) -> dict[str, Any]:
+    """The discretisation error as summary.json holds it."""
     named = zip(electrodes, error.electrodes_percent, strict=True)
     each = [{"name": name, "voltage_percent": float(one)} for name, one in named]
     return {"force_percent": percent[0], "voltage_percent": percent[1], "electrodes": each}
 
 
-def _estimated(config: Config, given: bool) -> tuple[list[dict[str, Any]], dict[float, Answers], str | None]:
-    """What the materials do, largest on the voltage first; answers on larger elements; what is missing. UNSOLVED."""
+def _estimate_parts(config: Config, given: bool) -> tuple[list[dict[str, Any]], dict[float, Answers], str | None]:
+    """Shares of the materials, largest on the voltage first; answers on larger elements; a note on what is missing.
+
+    Raises any of UNSOLVED.
+    """
     if follows_path(config):
-        larger = _on_larger_elements(lambda ratio: along_path(config, ratio))
-        return [], larger, LOST["slide" if config.press.path_xy_mm else "path"]
+        larger = _pressed_on_larger_elements(lambda ratio: along_path(config, ratio))
+        return [], larger, MISSING_NOTES["slide" if config.press.path_xy_mm else "path"]
     rows = [row for row in material_tolerances(config) if row.counted]
     keys = sorted({key for row in rows for key in row.slopes})
-    loads = _on_larger_elements(lambda ratio: full_load(config, ratio, keys if ratio == RATIOS[0] else ()))
-    nominal, _, slopes = loads[RATIOS[0]]
-    parts = [_part(row, nominal, slopes, given) for row in rows]
-    larger = {ratio: answer_at(load) for ratio, load in loads.items()}
+    loads = _pressed_on_larger_elements(lambda ratio: full_load(config, ratio, keys if ratio == SIZE_RATIOS[0] else ()))
+    nominal, _, slopes = loads[SIZE_RATIOS[0]]
+    parts = [_material_part(row, nominal, slopes, given) for row in rows]
+    larger = {ratio: answers_at_full_load(load) for ratio, load in loads.items()}
     return sorted(parts, key=lambda part: -part["voltage_percent"]), larger, None
 
 
 Found = TypeVar("Found")
 
 
-def _on_larger_elements(press: Callable[[float], Found]) -> dict[float, Found]:
-    """By ratio; only the first is indispensable. UNSOLVED."""
-    found = {RATIOS[0]: press(RATIOS[0])}
-    for ratio in RATIOS[1:]:
-        with suppress(*UNSOLVED):
+def _pressed_on_larger_elements(press: Callable[[float], Found]) -> dict[float, Found]:
+    """Ratio of sizes -> result of press there; only that of the first ratio must succeed. Raises any of UNSOLVED."""
+    found = {SIZE_RATIOS[0]: press(SIZE_RATIOS[0])}
+    for ratio in SIZE_RATIOS[1:]:
+        with suppress(*PRESS_ERRORS):
             found[ratio] = press(ratio)
     return found
 
 
-def prepare(config: Config) -> None:
-    """What uncertainty needs besides the press itself, left in the cache: it may be done beside that."""
-    with suppress(*UNSOLVED):
-        _estimated(config, given=False)
+def fill_cache(config: Config) -> None:
+    """Calculate what uncertainty needs besides the press itself and leave it in the cache: it may run beside the
+    press.
+    """
+    with suppress(*PRESS_ERRORS):
+        _estimate_parts(config, given=False)
 
 
-def _known_force(percent: tuple[float, float], given: bool) -> tuple[float, float]:
-    """Of force and voltage; a force that is given is not in doubt."""
+def _without_given_force(percent: tuple[float, float], given: bool) -> tuple[float, float]:
+    """Percentages of force and voltage, with zero for a force that is given."""
     return (0.0 if given else percent[0], percent[1])
 
 
-def _together(parts: Sequence[Mapping[str, Any]]) -> dict[str, float]:
+def _root_sum_square(parts: Sequence[Mapping[str, Any]]) -> dict[str, float]:
+    """The root of the sum of the squares of all parts, in percent of force and of voltage."""
     return {name: hypot(*(part[name] for part in parts)) for name in ("force_percent", "voltage_percent")}
 
 
-def _part(row: Tolerance, nominal: Response, slopes: Mapping[str, Response], given: bool) -> dict[str, Any]:
-    """One constant of a material at the end of its tolerance."""
+def _material_part(row: Tolerance, nominal: Response, slopes: Mapping[str, Response], given: bool) -> dict[str, Any]:
+    """The part of one constant of a material, at the end of its tolerance."""
     force = sum(slope * slopes[key].force for key, slope in row.slopes.items())
     voltage = sum(slope * slopes[key].voltage for key, slope in row.slopes.items())
     percent = (
         100 * row.plus_minus * abs(force / nominal.force),
         100 * row.plus_minus * abs(voltage / nominal.voltage),
     )
-    return _named(f"{row.label} ±{row.plus_minus:.3g} {row.unit}", row.source, _known_force(percent, given))
+    return _part_table(
+        f"{row.label} ±{row.plus_minus:.3g} {row.unit}", row.source, _without_given_force(percent, given)
+    )
 
 
-def _named(name: str, source: str, percent: tuple[float, float]) -> dict[str, Any]:
+def _part_table(name: str, source: str, percent: tuple[float, float]) -> dict[str, Any]:
+    """One part of the uncertainty as summary.json holds it."""
     return {"name": name, "source": source, "force_percent": percent[0], "voltage_percent": percent[1]}

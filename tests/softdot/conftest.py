@@ -79,7 +79,7 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
     for module in (run_folder, run):
         monkeypatch.setattr(module, "SecondProcess", AtOnce)
     monkeypatch.setattr(run_folder, "draw", lambda *_: {})
-    monkeypatch.setattr(uncertainty, "prepare", lambda _: None)
+    monkeypatch.setattr(uncertainty, "fill_cache", lambda _: None)
     monkeypatch.setattr(uncertainty, "uncertainty", called("uncertainty"))
     return fakes
 

@@ -7,7 +7,13 @@ from foundation.errors import InputError
 from softdot.case import Case
 from softdot.config.loading import config_from
 from softdot.summary import press_part
-from softdot.tolerances.discretisation import LEAST_PERCENT, ORDER, Answers, answers_of, discretisation_error
+from softdot.tolerances.discretisation import (
+    CONVERGENCE_ORDER,
+    LEAST_PERCENT,
+    Answers,
+    answers_from_summary,
+    discretisation_error,
+)
 from tests.softdot.test_uncertainty import RELAXING
 
 SEGMENT = {
@@ -32,7 +38,9 @@ def answers(**of_size):
 
 def test_an_error_that_falls_with_the_size_is_found_by_both_larger_meshes():
     """Force = F (1 + c h^p): each mesh finds c h^p."""
-    error = discretisation_error(*answers(force=lambda h: 2.0 + 0.02 * h**ORDER, voltage=lambda h: 5.0 + 0.0 * h))
+    error = discretisation_error(
+        *answers(force=lambda h: 2.0 + 0.02 * h**CONVERGENCE_ORDER, voltage=lambda h: 5.0 + 0.0 * h)
+    )
     assert error.force_percent == pytest.approx(np.hypot(2**0.5 * 100 * 0.02 / 2.02, LEAST_PERCENT))
     assert error.voltage_percent == LEAST_PERCENT
 
@@ -42,7 +50,7 @@ def test_a_difference_that_vanishes_by_chance_is_made_up_for_by_the_other_one():
     error = discretisation_error(
         *answers(force=lambda h: 1.0 + 0.02 * (h - 1) * (h - 2), voltage=lambda h: 1.0 + 0.0 * h)
     )
-    assert error.force_percent == pytest.approx(np.hypot(4.0 / (3.0**ORDER - 1.0), LEAST_PERCENT))
+    assert error.force_percent == pytest.approx(np.hypot(4.0 / (3.0**CONVERGENCE_ORDER - 1.0), LEAST_PERCENT))
 
 
 def test_errors_along_a_path_are_relative_to_the_largest_value():
@@ -50,7 +58,7 @@ def test_errors_along_a_path_are_relative_to_the_largest_value():
     force = np.array([1.0, 2.0, 0.0])
     fine, larger = (Answers(scale * force, force, force[:, None]) for scale in (1.0, 1.1))
     found = discretisation_error(fine, {2.0: larger}).force_percent
-    assert found == pytest.approx(np.hypot(10.0 / (2.0**ORDER - 1.0), LEAST_PERCENT))
+    assert found == pytest.approx(np.hypot(10.0 / (2.0**CONVERGENCE_ORDER - 1.0), LEAST_PERCENT))
 
 
 def pressed(tables, factor=1.0):
@@ -75,7 +83,7 @@ def test_the_stated_error_covers_the_true_one_and_is_of_its_size():
     for change in CHANGES:
         tables = {**SLICE, **change}
         summary, found = pressed(tables)
-        fine, exact = answers_of(summary), answers_of(pressed(tables, 0.25)[0])
+        fine, exact = answers_from_summary(summary), answers_from_summary(pressed(tables, 0.25)[0])
         for name, ours, reference in zip(("force_percent", "voltage_percent"), fine[:2], exact[:2], strict=True):
             true = 100.0 * np.abs(ours - reference).max() / np.abs(reference).max()
             ratios.append(found["discretisation_error"][name] / true)

@@ -87,7 +87,7 @@ def kit(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(make, "ensure_rendering", lambda: None)
         patch.setattr(make, "draw_all", white_pictures)
-        patch.setattr(make, "budget_of", lambda *_: MADE_UP)
+        patch.setattr(make, "tolerance_budget", lambda *_: MADE_UP)
         status = main(["kit", str(folder / "free.toml"), "-o", str(folder / "out"), "--json"])
     assert status == 0
     return folder / "out"
@@ -212,7 +212,7 @@ def test_a_budget_that_fails_leaves_a_kit_without_it(tmp_path, monkeypatch, caps
         raise error
 
     prepared(monkeypatch)
-    monkeypatch.setattr(make, "budget_of", stop)
+    monkeypatch.setattr(make, "tolerance_budget", stop)
     (tmp_path / "free.toml").write_text(FREE, "utf-8")
     assert main(["kit", str(tmp_path / "free.toml"), "-o", str(tmp_path / "out")]) == 3
     said = capsys.readouterr()
@@ -238,7 +238,7 @@ def test_the_kit_is_there_before_its_budget(tmp_path, monkeypatch):
         return MADE_UP
 
     prepared(monkeypatch)
-    monkeypatch.setattr(make, "budget_of", look)
+    monkeypatch.setattr(make, "tolerance_budget", look)
     (tmp_path / "free.toml").write_text(FREE, "utf-8")
     assert main(["kit", str(tmp_path / "free.toml"), "-o", str(tmp_path / "out")]) == 0
     assert seen["entries"] == make.KIT.files
@@ -259,7 +259,7 @@ def test_a_budget_does_not_go_into_another_kit(tmp_path, monkeypatch, capsys):
         return MADE_UP
 
     prepared(monkeypatch)
-    monkeypatch.setattr(make, "budget_of", overtaken)
+    monkeypatch.setattr(make, "tolerance_budget", overtaken)
     (tmp_path / "free.toml").write_text(FREE, "utf-8")
     assert main(["kit", str(tmp_path / "free.toml"), "-o", str(tmp_path / "out")]) == 2
     assert "another kit was written there meanwhile" in capsys.readouterr().err
@@ -287,7 +287,7 @@ def test_an_impossible_kit_is_refused_in_one_sentence(tmp_path, monkeypatch, cap
 
 
 @pytest.mark.press
-@pytest.mark.parametrize(("when", "left"), [("draw_all", ["free.toml"]), ("budget_of", ["free.toml", "out"])])
+@pytest.mark.parametrize(("when", "left"), [("draw_all", ["free.toml"]), ("tolerance_budget", ["free.toml", "out"])])
 def test_an_interrupt_leaves_a_whole_kit_or_nothing(tmp_path, monkeypatch, when, left):
     def interrupt(*_):
         raise KeyboardInterrupt

@@ -4,9 +4,17 @@ import pytest
 
 from softdot.config.loading import config_from
 from softdot.tolerances import questions
-from softdot.tolerances.budget import budget_of
+from softdot.tolerances.budget import tolerance_budget
 from softdot.tolerances.factors import FACTORS, factor_key, with_factors
-from softdot.tolerances.responses import KitPress, Response, coarser, mesh_of, path_matters, slopes_along, value_along
+from softdot.tolerances.responses import (
+    KitPress,
+    Response,
+    coarser_press,
+    path_matters,
+    slopes_along,
+    solved_mesh,
+    value_along,
+)
 from softdot.tolerances.tolerances import shifts, tolerances
 from tests.cases import for_each
 
@@ -51,7 +59,7 @@ def test_full_load_has_the_derivatives_of_the_whole_press(config, solved):
     """Without memory the way there does not matter; differentiated along it, the press gives the same."""
     nominal, found = solved
     keys = [factor_key(config, "medium1", "modulus_factor"), "press.indentation_mm"]
-    along, by_key = slopes_along(with_factors(config), keys, mesh_of(config))
+    along, by_key = slopes_along(with_factors(config), keys, solved_mesh(config))
     assert nominal == pytest.approx(along, rel=1e-6)
     for key in keys:
         assert found[key] == pytest.approx(by_key[key], rel=1e-5)
@@ -60,7 +68,7 @@ def test_full_load_has_the_derivatives_of_the_whole_press(config, solved):
 def test_a_press_beside_is_the_whole_press(config, pressed):
     """A dot that is 0.05 mm off, from the state of the one that is not, against a press of its own."""
     moved = shifts(config)[0][1]
-    assert pressed.value(moved) == pytest.approx(value_along(moved, mesh_of(config)), rel=1e-6)
+    assert pressed.value(moved) == pytest.approx(value_along(moved, solved_mesh(config)), rel=1e-6)
 
 
 @for_each(
@@ -183,7 +191,7 @@ def test_edges_of_electrodes_are_not_differentiated():
 
 
 def test_the_check_has_larger_elements(config):
-    meshes = [coarser(config, factor).mesh.element_size_mm for factor in (1.0, 2.0, 3.0)]
+    meshes = [coarser_press(config, factor).mesh.element_size_mm for factor in (1.0, 2.0, 3.0)]
     assert meshes == pytest.approx([1.2, 2.4, 3.6])
 
 
@@ -201,7 +209,7 @@ def budget(config, monkeypatch, tmp_path):
 
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
     monkeypatch.setattr(questions, "KitPress", MadeUp)
-    return budget_of(config)
+    return tolerance_budget(config)
 
 
 def test_largest_effect_on_the_voltage_comes_first(budget):

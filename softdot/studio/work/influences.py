@@ -9,10 +9,10 @@ from softdot.json_files import plain
 from softdot.studio.processes import Tell
 from softdot.studio.work.design import case_of
 from softdot.studio.work.press import COARSE, TaskProgress
-from softdot.tolerances.budget import budget_of
+from softdot.tolerances.budget import tolerance_budget
 from softdot.tolerances.factors import FACTORS, factor_key, has_component
-from softdot.tolerances.responses import KitPress, coarser
-from softdot.tolerances.tolerances import NAMES
+from softdot.tolerances.responses import KitPress, coarser_press
+from softdot.tolerances.tolerances import LAYER_NAMES
 
 LARGER = 0.1
 WORDS = {
@@ -51,14 +51,14 @@ def tolerances_of_making(text: str, tell: Tell) -> dict[str, Any]:
     progress.stage("tolerances")
     config = case.config
     half = config.mesh.scale_sizes(COARSE / 2).model_copy(update={"mesher": _quick(config).mesh.mesher})
-    budget = plain(budget_of(config.model_copy(update={"mesh": half}), progress.step).as_dict())
+    budget = plain(tolerance_budget(config.model_copy(update={"mesh": half}), progress.step).as_dict())
     rows = [{**row, "label": f"{row['label']} ±{row['plus_minus']:.3g} {row['unit']}"} for row in budget["rows"]]
     return {"rows": rows, "total": budget["root_sum_square"]}
 
 
 def _quick(config: Config) -> Config:
     """On large elements, extruded where the shape allows it."""
-    larger = coarser(config, COARSE)
+    larger = coarser_press(config, COARSE)
     domed = config.segment.effector is not None and config.segment.effector.shape == "dome"
     return larger if domed else larger.model_copy(update={"mesh": larger.mesh.model_copy(update={"mesher": "layered"})})
 
@@ -66,7 +66,7 @@ def _quick(config: Config) -> Config:
 def _keys(config: Config) -> dict[str, tuple[str, float]]:
     """Key of the configuration with factors -> what it is called, and its size."""
     found = {
-        factor_key(config, component, factor): (WORDS[factor].format(NAMES.get(component, component)), 1.0)
+        factor_key(config, component, factor): (WORDS[factor].format(LAYER_NAMES.get(component, component)), 1.0)
         for component, factors in FACTORS.items()
         if has_component(config, component)
         for factor in factors

@@ -17,7 +17,7 @@ from softdot.studio.processes import Tell
 from softdot.studio.work.design import case_of, config_of, pressed_part
 from softdot.studio.work.remedies import late_remedies
 from softdot.summary import mesh_part, press_part
-from softdot.tolerances.responses import on_larger_elements
+from softdot.tolerances.responses import with_larger_elements
 from solve.result import PressResult, Step
 
 COARSE = 3.0
@@ -27,7 +27,7 @@ COARSE = 3.0
 def coarse_press(text: str, tell: Tell) -> dict[str, Any]:
     """The press on large elements, extruded where the shape allows it: meshed in no time, some percent off."""
     case = pressed_part(case_of(text))
-    larger = on_larger_elements(case.config, COARSE)
+    larger = with_larger_elements(case.config, COARSE)
     try:
         layered = Case(larger.model_copy(update={"mesh": larger.mesh.model_copy(update={"mesher": "layered"})}))
         return _pressed(layered, TaskProgress(tell), "coarse")
@@ -48,7 +48,7 @@ def accurate_press(text: str, tell: Tell) -> dict[str, Any]:
 
 def press_of_cell(text: str, tell: Tell) -> dict[str, Any]:
     """The press of an array by the cell of its dots, on large elements: what each segment reads. InputError."""
-    case, progress = Case(on_larger_elements(config_of(text), COARSE)), TaskProgress(tell)
+    case, progress = Case(with_larger_elements(config_of(text), COARSE)), TaskProgress(tell)
     _ = case.warnings
     press = case.by_cell()
     pressed = _pressed_with_progress(press, progress)

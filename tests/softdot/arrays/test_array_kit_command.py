@@ -9,7 +9,7 @@ import pytest
 from softdot.cli import main
 from softdot.config.loading import load_config
 from softdot.kit import folder as make
-from softdot.tolerances.budget import budget_of
+from softdot.tolerances.budget import tolerance_budget
 from tests.softdot.arrays.test_array_command import SMALL
 from tests.softdot.test_kit import MADE_UP, prepared
 
@@ -32,7 +32,7 @@ def summary(tmp_path_factory):
     folder = tmp_path_factory.mktemp("kit")
     with pytest.MonkeyPatch.context() as patch:
         prepared(patch)
-        patch.setattr(make, "budget_of", lambda *_: MADE_UP)
+        patch.setattr(make, "tolerance_budget", lambda *_: MADE_UP)
         path = written(folder, SMALL.replace("rows = 1", "rows = 3") + SHEETS)
         assert main(["kit", path, "-q", "-o", str(folder / "out")]) == 0
     told = json.loads((folder / "out" / "kit.json").read_text("utf-8"))
@@ -132,7 +132,7 @@ def test_whole_kit_of_a_pair(tmp_path, capsys):
     assert told["failure"] is None
     assert {check["component"] for check in told["cavity_checks"]} == {"effector", "medium1", "medium2"}
     assert all(answer["printable"] for answer in told["printability"])
-    nominal = budget_of(make.budget_config(load_config(path))).nominal
+    nominal = tolerance_budget(make.budget_config(load_config(path))).nominal
     assert told["tolerance_budget"]["nominal"]["voltage_V"] == pytest.approx(nominal.voltage)
     pictures = sorted((out / "pictures").glob("*.png"))
     assert {"exploded.png", "section.png", "mould-medium2.png", "cut-spacer-y.png"} <= {one.name for one in pictures}
