@@ -1,4 +1,4 @@
-"""The folder of a kit: refused, built, checked and written at once or not at all; then its tolerance budget."""
+"""The folder of a kit: checked, built and written at once or not at all; then its tolerance budget."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -24,7 +24,7 @@ from softdot.dask_cluster import AwayError
 from softdot.executors import executor_for
 from softdot.json_files import json_text, plain, write_json
 from softdot.kit.layout import side_by_side
-from softdot.kit.summary import heading, pressed, summary_of
+from softdot.kit.summary import heading, press_words, summary_of
 from softdot.log import LOG_FILE, log_file, warn
 from softdot.output import Product, staged_folder
 from softdot.prepared_press import PreparedPress
@@ -55,44 +55,45 @@ def make_kit(
     """
     progress = progress or Logged()
     with named_when_missing(), executor_for(scheduler) as executor:
-        warnings = _checked(config)
+        warnings = _kit_warnings(config)
         ensure_rendering()
         with staged_folder(out, KIT) as folder:
             contents = contents_of(config, warnings)
             warn(list(contents.warnings))
             progress.stage("export")
-            _write_parts(contents, folder)
+            _write_files(contents, folder)
             first = _write_sheet(config, contents, UNFINISHED, folder)
         with log_file(out / LOG_FILE):
             progress.stage("tolerances")
-            outcome = _outcome(config, progress, executor)
+            outcome = _budget_outcome(config, progress, executor)
         if json_text(first) != _kit_json(out):
             raise InputError(f"output '{out}': another kit was written there meanwhile; this one's budget has no place")
         return _write_sheet(config, contents, outcome, out)
 
 
 def _kit_json(out: Path) -> str | None:
+    """The text of kit.json in a folder, None where it cannot be read."""
     try:
         return (out / KIT.summary).read_text("utf-8")
     except OSError:
         return None
 
 
-def _checked(config: Config) -> list[str]:
-    """What a user should know about the design. InputError for what cannot be built, or pressed for the budget."""
+def _kit_warnings(config: Config) -> list[str]:
+    """Warnings of the design, without repetition. InputError for what cannot be built, or pressed for the budget."""
     array = [] if config.array is None else ArrayCase(config).built
     case = PreparedPress(budget_config(config))
     return list(dict.fromkeys([*array, *case.warnings]))
 
 
 def device_of(config: Config) -> Device:
-    """What the kit makes: one segment, or the array of the table [array]. InputError for what a kit cannot make."""
+    """The device that a kit makes: one segment, or the array of [array]. InputError for one that a kit cannot make."""
     layout = PreparedPress(config).layout
     return lone_device(config.segment) if layout is None else array_device(layout, config.fabrication)
 
 
 def budget_config(config: Config) -> Config:
-    """What the tolerance budget presses: of an array one segment alone, held where a grid holds it."""
+    """The configuration that the budget presses: of an array one segment alone, held where a grid holds it."""
     if config.array is None:
         return config
     segment, held = config.segment, config.array.grid_layers
@@ -102,7 +103,7 @@ def budget_config(config: Config) -> Config:
 
 
 def contents_of(config: Config, warnings: list[str]) -> Contents:
-    """All but the budget. InputError."""
+    """The contents of the build sheet without the tolerance budget. InputError."""
     fabrication, device = config.fabrication, device_of(config)
     flat = flat_kit(device, fabrication)  # the quicker one first: it refuses too
     solid = solid_kit(device, fabrication)
@@ -122,14 +123,14 @@ def contents_of(config: Config, warnings: list[str]) -> Contents:
         printability=printability,
         budget=None,
         budget_note="",
-        press=pressed(budget_config(config)),
-        pressed=_pressed_segment(config),
-        warnings=(*warnings, *_loose_film(device, flat), *notes, *unprintable),
+        press=press_words(budget_config(config)),
+        pressed=_budget_subject(config),
+        warnings=(*warnings, *_loose_film_warnings(device, flat), *notes, *unprintable),
     )
 
 
-def _loose_film(device: Device, flat: FlatKit) -> list[str]:
-    """What the simulation of a free rim does not know."""
+def _loose_film_warnings(device: Device, flat: FlatKit) -> list[str]:
+    """A warning where the film reaches beyond a free rim, which the simulation does not know."""
     if device.stack.boundary != "free" or flat.layout.beyond < ROUNDING_MM:
         return []
     return [
@@ -138,8 +139,8 @@ def _loose_film(device: Device, flat: FlatKit) -> list[str]:
     ]
 
 
-def _pressed_segment(config: Config) -> str:
-    """What the budget is of, in words."""
+def _budget_subject(config: Config) -> str:
+    """The segment that the budget is of, in words."""
     if config.array is None:
         return "the segment"
     held = config.array.grid_layers
@@ -147,8 +148,8 @@ def _pressed_segment(config: Config) -> str:
     return f"one segment of the array alone, {sides}"
 
 
-def _outcome(config: Config, progress: Progress, executor: Executor) -> BudgetOutcome:
-    """The tolerance budget, or why there is none."""
+def _budget_outcome(config: Config, progress: Progress, executor: Executor) -> BudgetOutcome:
+    """The tolerance budget, or the reason why there is none. AwayError."""
     try:
         budget = tolerance_budget(budget_config(config), progress.step, executor)
         return BudgetOutcome("complete", budget=plain(budget.as_dict()))
@@ -158,8 +159,8 @@ def _outcome(config: Config, progress: Progress, executor: Executor) -> BudgetOu
         return failed_budget(error)
 
 
-def _write_parts(contents: Contents, folder: Path) -> None:
-    """Solids, cut files and pictures."""
+def _write_files(contents: Contents, folder: Path) -> None:
+    """Write solids, cut files and pictures."""
     (folder / "parts").mkdir()
     for part in contents.solid.parts:
         write_stl(part, folder / "parts" / f"{part.label}.stl")
@@ -172,7 +173,7 @@ def _write_parts(contents: Contents, folder: Path) -> None:
 
 
 def _write_sheet(config: Config, contents: Contents, outcome: BudgetOutcome, folder: Path) -> dict[str, Any]:
-    """The build sheet and kit.json, each replaced whole, kit.json last."""
+    """Write the build sheet and kit.json, each replaced whole, kit.json last; the content of kit.json."""
     contents = replace(contents, budget=outcome.budget, budget_note=outcome.note)
     named = heading(config, KIT)
     write_page(contents, named, folder / "pictures", folder / "kit.html")

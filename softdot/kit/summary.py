@@ -1,4 +1,4 @@
-"""What kit.json says of a kit: every number with its unit in its name."""
+"""The content of kit.json: every number with its unit in its name."""
 
 from dataclasses import asdict
 from typing import Any
@@ -14,7 +14,7 @@ from softdot.version import installed_version
 
 
 def heading(config: Config, product: Product) -> dict[str, Any]:
-    """What names a kit."""
+    """The keys of kit.json that identify a kit: format, version, configuration and its hash."""
     return {
         "format": product.format,
         "softdot_version": installed_version(),
@@ -24,8 +24,8 @@ def heading(config: Config, product: Product) -> dict[str, Any]:
     }
 
 
-def pressed(config: Config) -> str:
-    """The press in words."""
+def press_words(config: Config) -> str:
+    """The press of a configuration in words."""
     press, dot = config.press, config.dot
     how_far = f"{press.force_N:g} N" if press.force_N is not None else f"{press.depth_mm:g} mm deep"
     return f"the {dot.shape} pressed {how_far}"
@@ -34,7 +34,7 @@ def pressed(config: Config) -> str:
 def summary_of(contents: Contents, state: str, failure: str | None) -> dict[str, Any]:
     """Every number of the kit with its unit in its name, in plain data.
 
-    state : of the tolerance budget, "unfinished", "complete" or "failed"; failure : why it failed, else None.
+    state : of the tolerance budget, "unfinished", "complete" or "failed". failure : why it failed, else None.
     """
     return {
         "failure": failure,
@@ -65,7 +65,7 @@ def summary_of(contents: Contents, state: str, failure: str | None) -> dict[str,
 
 
 def _flat(pattern: FlatPattern) -> dict[str, Any]:
-    """Sizes of the finished pattern and the length of its cuts, kerf compensated."""
+    """A flat pattern: its finished size, and the length of its cuts with the kerf compensated."""
     return {
         "name": pattern.name,
         "files": [f"cut/{pattern.name}.dxf", f"cut/{pattern.name}.svg"],

@@ -22,7 +22,7 @@ class BuiltPlate:
 
 
 def build_plate(request: PlateRequest) -> BuiltPlate:
-    """Check, translate and build. InputError for everything that cannot be built."""
+    """Check a request, translate its text and build the solid. InputError for everything that cannot be built."""
     check_request(request)
     sizes = braille_sizes(request.standard, request.given)
     thickness = request.thickness_mm or SLAB_THICKNESS_MM

@@ -18,15 +18,18 @@ from softdot.progress import Logged, Progress
 from softdot.system_libraries import named_when_missing
 
 DEFLECTION_MM, ANGULAR_DEFLECTION = 0.003, 0.2
-"""Facets of the files: tip and flank of a dot of radius 0.8 mm stay within 0.005 mm, a tenth of a layer of SLA."""
+"""Deviation of facets in mm and in radians: tip and flank of a dot of radius 0.8 mm stay within 0.005 mm, a tenth of a
+layer of SLA.
+"""
 CAD_AND_PICTURE = ("plate.step", "plate.3mf", "plate.stl", "plate.png")
 PRINTABILITY = {name: f"printability-{name}.png" for name in printer_names()}
 PLATE = Product("softdot-plate/1", "plate.json", frozenset({"plate.json", *CAD_AND_PICTURE, *PRINTABILITY.values()}))
-TOLERATED: dict[QuantityName, str] = {"base_diameter_mm": "dot diameter", "height_mm": "dot height"}
+TOLERANCE_TITLES: dict[QuantityName, str] = {"base_diameter_mm": "dot diameter", "height_mm": "dot height"}
+"""Size with a tolerance in the standard -> its name in the table of printability."""
 
 
 def make_plate(request: PlateRequest, out: Path, progress: Progress | None = None) -> dict[str, Any]:
-    """Build, check and write one plate into the folder out; return what plate.json says. InputError."""
+    """Build, check and write one plate into the folder out; the content of plate.json. InputError."""
     progress = progress or Logged()
     with named_when_missing():
         built = build_plate(request)
@@ -42,12 +45,12 @@ def make_plate(request: PlateRequest, out: Path, progress: Progress | None = Non
 
 
 def check_plate(built: BuiltPlate) -> tuple[Printability, ...]:
-    """The printability of a plate by every printer of the table."""
+    """The printability of a plate on every printer of the table."""
     plate, first = built.plate, built.plate.dots[0]
     top = (first.x_mm, first.y_mm, first.base_z_mm + first.height_mm)
     sizes = [
         CriticalSize(title, size.value_mm, size.deviation_mm, top)
-        for name, title in TOLERATED.items()
+        for name, title in TOLERANCE_TITLES.items()
         if (size := built.sizes.known.get(name)) is not None and size.deviation_mm is not None
     ]
     profiles = [printer_profile(name) for name in printer_names()]

@@ -1,4 +1,4 @@
-"""What plate is asked for: its kind, and the options that say something for it."""
+"""The request for a plate: its kind, and the options that act for it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -10,7 +10,7 @@ from geometry.plates.braille_sizes import require_length
 
 Kind = Literal["text", "dot", "height-series", "tip"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
-ONLY_FOR: dict[str, tuple[Kind, ...]] = {
+KINDS_OF_OPTION: dict[str, tuple[Kind, ...]] = {
     "table": ("text",),
     "width_cells": ("text",),
     "dot_pitch_mm": ("text",),
@@ -22,18 +22,17 @@ ONLY_FOR: dict[str, tuple[Kind, ...]] = {
     "thickness_mm": ("text", "dot", "height-series"),
     "thread": ("tip",),
 }
-"""Options that say something for some kinds alone."""
+"""Option that acts for some kinds alone -> these kinds."""
 
 
 @dataclass(frozen=True)
 class PlateRequest:
-    """One plate.
+    """A request for one plate.
 
-    text : words or Unicode Braille, lines separated by newlines; None for the other kinds.
-    given : sizes in mm that replace those of the standard.
-    table : a table of liblouis; None for the built-in uncontracted English.
-    width_cells : break longer lines at blanks; None refuses long lines.
-    heights_mm, thickness_mm, margin_mm, thread : None for the usual ones.
+    text : words or Unicode Braille, lines separated by newlines; None for the other kinds. given : sizes in mm that
+    replace those of the standard. table : a table of liblouis; None for the built-in uncontracted English. width_cells
+    : break longer lines at blanks; None refuses long lines. heights_mm, thickness_mm, margin_mm, thread : None for the
+    usual ones.
     """
 
     standard: str
@@ -49,15 +48,15 @@ class PlateRequest:
 
 
 def check_request(request: PlateRequest) -> None:
-    """InputError for an option that says nothing for this kind, and for numbers out of bounds."""
+    """InputError for an option that does not act for the kind of plate, and for numbers out of bounds."""
     if request.kind == "text" and not (request.text or "").strip():
         raise InputError("text: is empty, a plate needs at least one character")
     if request.kind != "text" and request.text is not None:
         raise InputError(f"text '{request.text}': --kind {request.kind} has no text, leave it out")
-    own = {name: getattr(request, name, None) for name in ONLY_FOR} | dict(request.given)
+    own = {name: getattr(request, name, None) for name in KINDS_OF_OPTION} | dict(request.given)
     for name, value in own.items():
-        if value is not None and request.kind not in ONLY_FOR.get(name, KINDS):
-            allowed = ", ".join(ONLY_FOR[name])
+        if value is not None and request.kind not in KINDS_OF_OPTION.get(name, KINDS):
+            allowed = ", ".join(KINDS_OF_OPTION[name])
             raise InputError(f"{_option(name)}: has no meaning for --kind {request.kind}, only for {allowed}")
     for name in ("thickness_mm", "margin_mm"):
         if (length := getattr(request, name)) is not None:

@@ -11,11 +11,11 @@ from export.view import INK, DrawnBody, View, picture_box, picture_page, render,
 from softdot.plate.build import BuiltPlate
 
 VIEW = View(0.0, 50.0)
-TITLES = {"text": "Braille plate", "dot": "Single dot", "height-series": "Dots that grow", "tip": "Indenter tip"}
+KIND_TITLES = {"text": "Braille plate", "dot": "Single dot", "height-series": "Dots that grow", "tip": "Indenter tip"}
 
 
 def draw_plate(built: BuiltPlate, path: Path) -> None:
-    """Write a PNG. InputError without OpenGL."""
+    """Write the picture of a plate as PNG. InputError without OpenGL."""
     import pyvista
 
     surface = surface_of(built.plate.part.solid)
@@ -34,11 +34,11 @@ def draw_plate(built: BuiltPlate, path: Path) -> None:
 
 def _title(built: BuiltPlate) -> str:
     text = shorten(built.request.text or "", 26, placeholder="…")
-    return f"{TITLES[built.request.kind]}{f' “{text}”' if text else ''}, {built.sizes.standard}"
+    return f"{KIND_TITLES[built.request.kind]}{f' “{text}”' if text else ''}, {built.sizes.standard}"
 
 
 def _write_sizes(figure: Any, built: BuiltPlate) -> None:
-    """Sizes in a column at the right."""
+    """Write the sizes of a plate in a column at the right of its picture."""
     plate, first = built.plate, built.plate.dots[0]
     heights = sorted({dot.height_mm for dot in plate.dots})
     known = {name: size.value_mm for name, size in built.sizes.known.items() if name.endswith("pitch_mm")}

@@ -1,4 +1,4 @@
-"""What plate.json says of a plate: every number with its unit in its name."""
+"""The content of plate.json: every number with its unit in its name."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -45,7 +45,7 @@ def _text(built: BuiltPlate) -> dict[str, Any]:
 
 
 def _warnings(built: BuiltPlate) -> list[str]:
-    """Sizes that the standard leaves open or that were only recalled."""
+    """A warning for each size that the standard leaves open or that its source only recalls."""
     return [
         f"{name} = {size.value_mm:g} is the {size.basis} of the standard {built.sizes.standard}"
         for name, size in built.sizes.known.items()

@@ -94,7 +94,7 @@ class _Work:
 
     def done(self, executor: Executor, wanted: list[ReadingConditions]) -> None:
         """Read under these conditions, with all repeats."""
-        from softdot.sweeps.points import all_ended
+        from softdot.sweeps.points import records_as_completed
 
         tasks = {task.key(self._hash): task for one in wanted for task in map(self._task, repeated(self._study, one))}
         count = len(self.readings.records) + len(tasks)
@@ -105,7 +105,7 @@ class _Work:
             else:
                 self.readings.records[task.conditions] = found
         self._progress.step(len(self.readings.records), count, "")
-        for key, record in all_ended(executor, read_task, {key: (task,) for key, task in missing.items()}):
+        for key, record in records_as_completed(executor, read_task, {key: (task,) for key, task in missing.items()}):
             if record["status"] in ("read", "refused"):
                 keep(self._folder, key, missing[key], record)
             self.readings.records[missing[key].conditions] = record

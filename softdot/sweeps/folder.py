@@ -27,13 +27,17 @@ from softdot.sweeps.table import check_tables
 
 POINTS, TABLE, SPACE_COPY = "points", "sweep.parquet", "space.toml"
 CSV_TABLE, PICTURE, PAGE = "sweep.csv", "sweep.png", "report.html"
-_WHOLE = ("sweep.json", TABLE, SPACE_COPY, CSV_TABLE, PICTURE, PAGE)
-SWEEP = Product("softdot-sweep/1", "sweep.json", frozenset({*_WHOLE, *(f".{name}.part" for name in _WHOLE), POINTS}))
+_REPLACED_TOGETHER = ("sweep.json", TABLE, SPACE_COPY, CSV_TABLE, PICTURE, PAGE)
+SWEEP = Product(
+    "softdot-sweep/1",
+    "sweep.json",
+    frozenset({*_REPLACED_TOGETHER, *(f".{name}.part" for name in _REPLACED_TOGETHER), POINTS}),
+)
 POINT_FORMAT = "softdot-point/1"
 
 
 def check_folder(out: Path) -> Path:
-    """The real path of out. InputError unless it can be made, or is empty or the folder of an earlier sweep."""
+    """The real path of out. InputError unless it can be made, is empty or is the folder of an earlier sweep."""
     place = check_output(out, SWEEP)
     existing = next(path for path in (place, *place.parents) if path.exists())
     if not os.access(existing, os.W_OK):
@@ -41,15 +45,15 @@ def check_folder(out: Path) -> Path:
     return place
 
 
-def begin(place: Path) -> None:
-    """Make the folder; an earlier sweep in it stays."""
+def make_folder(place: Path) -> None:
+    """Make the folder of a sweep; an earlier sweep in it stays."""
     place.mkdir(parents=True, exist_ok=True)
     if not (place / SWEEP.summary).exists():
         write_json(place / SWEEP.summary, {"format": SWEEP.format, "complete": False})
     (place / POINTS).mkdir(exist_ok=True)
 
 
-def take(place: Path) -> int | None:
+def hold_folder(place: Path) -> int | None:
     """Hold the folder for this process, to be released at the end. InputError while another sweep writes it."""
     held = lock_folder(place)
     if held is None:
@@ -57,26 +61,26 @@ def take(place: Path) -> int | None:
     return held
 
 
-def sweep_up(place: Path) -> None:
-    """Remove what a process that was stopped may have left half-written."""
+def remove_half_written(place: Path) -> None:
+    """Remove the files that a stopped process may have left half-written."""
     for folder in (place, place / POINTS):
         for path in folder.glob(".*.part"):
             path.unlink(missing_ok=True)
 
 
-def kept(place: Path, config: Config) -> Record | None:
+def stored_record(place: Path, config: Config) -> Record | None:
     """The record of a point from an earlier sweep; None without one, after an accident and of another program.
 
-    A damaged one is None too, with a warning; it is deleted.
+    A damaged record is None too: it is deleted, with a warning.
     """
-    found = read_checked(_path(place, config), "the point is solved again")
+    found = read_checked(_record_path(place, config), "the point is solved again")
     if found is None:
         return None
     return found if found["key"] == outcome_key(config) and found["status"] not in ACCIDENTS else None
 
 
-def keep(place: Path, config: Config, record: Record) -> Record:
-    """Write the summary of a point, whole or not at all, and return it."""
+def store_record(place: Path, config: Config, record: Record) -> Record:
+    """Write the record of a point, whole or not at all, and return it."""
     from softdot.version import installed_version
 
     summary: dict[str, Any] = plain({
@@ -87,18 +91,18 @@ def keep(place: Path, config: Config, record: Record) -> Record:
         **record,
         "config": config.model_dump(mode="json"),
     })  # fmt: skip
-    write_checked(_path(place, config), summary)
+    write_checked(_record_path(place, config), summary)
     return summary
 
 
-def _path(place: Path, config: Config) -> Path:
+def _record_path(place: Path, config: Config) -> Path:
     return place / POINTS / f"{config_hash(config)}.json"
 
 
 def finish(
     place: Path, rows: list[dict[str, Any]], axes: Sequence[str], text: str | None, summary: Mapping[str, Any]
 ) -> None:
-    """Replace tables, picture, page, space and, last, the summary. axes : the columns that the sweep has varied."""
+    """Replace tables, picture, page, space and, last, the summary. axes : keys that the sweep has varied."""
     from softdot.sweeps.report import draw, write_csv, write_report
     from softdot.sweeps.table import write_table
 

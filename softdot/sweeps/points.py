@@ -19,31 +19,32 @@ Record = dict[str, Any]
 SOLVED, REFUSED, NOT_CONVERGED, CRASHED, LOST = "solved", "refused", "not-converged", "crashed", "lost"
 STATUSES = (SOLVED, REFUSED, NOT_CONVERGED, CRASHED, LOST)
 ACCIDENTS = (CRASHED, LOST)
-"""Not the fault of the configuration: tried again when the sweep is started again."""
-OF_THE_CALL = ("status", "reason", "seconds")
-"""What a record has beside the outcome."""
+"""Failures that are not the configuration's: such a point is tried again when the sweep is started again."""
+CALL_KEYS = ("status", "reason", "seconds")
+"""Keys that a record has beside those of the outcome."""
 
 
 def solve_point(config: Config) -> Record:
-    """Outcome of a press with status, reason (None when solved) and seconds. Raises nothing."""
+    """The outcome of a press with its status, reason (None when solved) and seconds. Raises nothing."""
     start = time.perf_counter()
     return {**_attempt(config), "seconds": time.perf_counter() - start}
 
 
 def _attempt(config: Config) -> Record:
+    """The outcome of a press with its status and reason."""
     try:
         found = outcome(config)
     except InputError as error:
-        return failed(REFUSED, str(error))
+        return failed_record(REFUSED, str(error))
     except Exception as error:
-        return failed(CRASHED, f"{type(error).__name__}: {error}")
+        return failed_record(CRASHED, f"{type(error).__name__}: {error}")
     if found["solver"]["converged"]:
         return {"status": SOLVED, "reason": None, **found}
-    return {**failed(NOT_CONVERGED, found["solver"]["failure"]), **found}
+    return {**failed_record(NOT_CONVERGED, found["solver"]["failure"]), **found}
 
 
-def failed(status: str, reason: str) -> Record:
-    """A record without numbers; the reason on one line."""
+def failed_record(status: str, reason: str) -> Record:
+    """A record without numbers; its reason is put on one line."""
     return {"status": status, "reason": " ".join(reason.split())}
 
 
@@ -56,12 +57,13 @@ def solve_points(
     workers: int | None = None,
     executor: Executor | None = None,
 ) -> list[Record]:
-    """The outcome of every configuration, in order, solved on one process per core, as many as workers, or an executor.
+    """The outcome of every configuration, in order, by an executor or by processes of this computer, one per core or
+    workers.
 
-    Each is a new dict with status ("solved", "refused", "not-converged", "crashed" or "lost"), reason (one line,
-    None when solved), seconds, and all of softdot.outcome.outcome(config), as far as there is any. No point stops the
-    others and nothing is raised for one. Equal configurations are solved once; outcomes that are remembered need no
-    worker. progress.step(done, count, reason or "") is called after each point.
+    Each is a new dict with status ("solved", "refused", "not-converged", "crashed" or "lost"), reason (one line, None
+    when solved), seconds, and all of softdot.outcome.outcome(config), as far as there is any. No point stops the others
+    and nothing is raised for one. Equal configurations are solved once; stored outcomes need no worker.
+    progress.step(done, count, reason or "") is called after each point.
     """
     progress = progress or Logged()
     keys = [outcome_key(config) for config in configs]
@@ -76,25 +78,29 @@ def solve_points(
 
 
 def solve_all(executor: Executor, configs: Mapping[str, Config]) -> Iterator[tuple[str, Record]]:
-    """Name and record of every configuration, in the order in which they end. What is solved is remembered."""
-    for name, record in all_ended(executor, solve_point, {name: (config,) for name, config in configs.items()}):
-        keep_outcome(configs[name], {key: value for key, value in record.items() if key not in OF_THE_CALL})
+    """Name and record of every configuration, in the order in which they end. What is solved is stored."""
+    for name, record in records_as_completed(
+        executor, solve_point, {name: (config,) for name, config in configs.items()}
+    ):
+        keep_outcome(configs[name], {key: value for key, value in record.items() if key not in CALL_KEYS})
         yield name, record
 
 
-def all_ended(executor: Executor, task: Task, arguments: Mapping[str, tuple[Any, ...]]) -> Iterator[tuple[str, Record]]:
-    """Name and record of the task with each arguments, in the order in which they end. AwayError."""
+def records_as_completed(
+    executor: Executor, task: Task, arguments: Mapping[str, tuple[Any, ...]]
+) -> Iterator[tuple[str, Record]]:
+    """Name and record of each call of a task, in the order in which the calls end. AwayError."""
     for name, future in completed_calls(executor, task, arguments):
-        yield name, _record(future)
+        yield name, _record_of_future(future)
 
 
-def _record(future: "Future[Any]") -> Record:
-    """What the worker returned, or why it could not."""
+def _record_of_future(future: "Future[Any]") -> Record:
+    """The result of a worker, or a record with the reason why there is none. AwayError."""
     try:
         return dict(future.result())
     except AwayError:
         raise
     except LostError as error:
-        return failed(LOST, str(error))
+        return failed_record(LOST, str(error))
     except Exception as error:
-        return failed(CRASHED, f"{type(error).__name__}: {error}")
+        return failed_record(CRASHED, f"{type(error).__name__}: {error}")

@@ -12,13 +12,13 @@ if TYPE_CHECKING:
     from rich.progress import Progress as Bars
 
 
-MEMORY_S = 3600.0
-"""The rate is that of the last hour: a point may take longer than the half minute that rich looks back."""
+RATE_WINDOW_S = 3600.0
+"""The rate is that of the last hour: a point may take longer than the half minute of rich."""
 
 
 @contextmanager
 def progress_of_points(chosen: Namespace) -> Iterator[Progress]:
-    """A bar of points where standard error is a terminal and --quiet was not given, else lines alone."""
+    """A bar of points where standard error is a terminal and --quiet was not given, else records of the log alone."""
     if chosen.quiet or not sys.stderr.isatty():
         yield Logged()
         return
@@ -30,7 +30,7 @@ def progress_of_points(chosen: Namespace) -> Iterator[Progress]:
         TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("points,"),
         TimeElapsedColumn(), TextColumn("passed,"), TimeRemainingColumn(), TextColumn("to go"),
     )  # fmt: skip
-    with Bars(*columns, console=Console(stderr=True), speed_estimate_period=MEMORY_S) as bars:
+    with Bars(*columns, console=Console(stderr=True), speed_estimate_period=RATE_WINDOW_S) as bars:
         yield _Points(bars)
 
 
@@ -50,7 +50,7 @@ class _Points(Logged):
         self._task = self._bars.add_task(name, total=None)
 
     def step(self, number: int, count: int, text: str) -> None:
-        """So many of the points are there; text is the reason of one that failed."""
+        """Show how many of the points are done; text is the reason of one that failed."""
         super().step(number, count, text)
         self._failures += bool(text)
         named = f"solve, {self._failures} failed" if self._failures else "solve"

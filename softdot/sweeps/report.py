@@ -1,4 +1,4 @@
-"""What people see of a sweep: a CSV file, a picture and a page."""
+"""The results of a sweep for people: a CSV file, a picture and a page."""
 
 import base64
 import csv
@@ -16,7 +16,7 @@ from softdot.sweeps.points import SOLVED
 HERE = Path(__file__).parent
 SHOWN_ROWS, SHOWN_AXES = 200, 6
 RESULTS = (("peak.reaction_force_N", "largest force (N)"), ("peak.open_circuit_voltage_V", "largest voltage (V)"))
-COLOUR, LONG = "#b5263b", 28
+COLOUR, LONGEST_LABEL = "#b5263b", 28
 
 
 def write_csv(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
@@ -25,14 +25,15 @@ def write_csv(path: Path, rows: Sequence[Mapping[str, Any]]) -> None:
     with whole_file(path) as beside, beside.open("w", encoding="utf-8", newline="") as stream:
         writer = csv.writer(stream)
         writer.writerow(names)
-        writer.writerows([[_cell(one.get(name)) for name in names] for one in rows])
+        writer.writerows([[_csv_cell(one.get(name)) for name in names] for one in rows])
 
 
-def _cell(value: Any) -> Any:
+def _csv_cell(value: Any) -> Any:
     return json.dumps(value) if isinstance(value, list | dict) else value
 
 
-def _place(row: Mapping[str, Any], axes: Sequence[str]) -> str:
+def _axis_values(row: Mapping[str, Any], axes: Sequence[str]) -> str:
+    """The values of the axes at a point, in words."""
     return ", ".join(f"{axis} = {number(row.get(axis))}" for axis in axes)
 
 
@@ -45,36 +46,40 @@ def draw(path: Path, rows: Sequence[Mapping[str, Any]], axes: Sequence[str]) -> 
     cells = figure.subplots(len(RESULTS), len(shown), squeeze=False, sharey="row")
     for line, (name, label) in zip(cells, RESULTS, strict=True):
         for cell, axis in zip(line, shown, strict=True):
-            _points(cell, [(one[axis], one[name]) for one in solved if one.get(name) is not None], len(axes) == 1)
+            _draw_points(cell, [(one[axis], one[name]) for one in solved if one.get(name) is not None], len(axes) == 1)
             cell.tick_params(labelsize=9)
             cell.grid(alpha=0.3)
         line[0].set_ylabel(label, fontsize=11, color=INK)
     for cell, axis in zip(cells[-1], shown, strict=True):
-        cell.set_xlabel(axis.replace(".", ".\n", 1) if len(axis) > LONG else axis, fontsize=9, color=INK)
+        cell.set_xlabel(axis.replace(".", ".\n", 1) if len(axis) > LONGEST_LABEL else axis, fontsize=9, color=INK)
     with whole_file(path) as beside:
         figure.savefig(beside, format="png")
 
 
-def _points(cell: Any, pairs: Sequence[tuple[Any, float]], joined: bool) -> None:
-    """Dots, joined by a line where there is one axis only; what is no number stands by its name."""
+def _draw_points(cell: Any, pairs: Sequence[tuple[Any, float]], joined: bool) -> None:
+    """Draw the results over one axis, joined by a line where there is only that axis; a value that is no number by its
+    name.
+    """
     numbers = all(isinstance(x, int | float) and not isinstance(x, bool) for x, _ in pairs)
-    places = sorted(pairs) if numbers else [(_name(x), y) for x, y in pairs]
+    places = sorted(pairs) if numbers else [(_value_label(x), y) for x, y in pairs]
     cell.plot(
         [x for x, _ in places], [y for _, y in places], "o-" if joined and numbers else "o", color=COLOUR,
         ms=5 if len(pairs) <= SHOWN_ROWS else 2, alpha=0.8, lw=1.2,
     )  # fmt: skip
 
 
-def _name(value: Any) -> str:
-    """A value that is no number, cut where it is long."""
+def _value_label(value: Any) -> str:
+    """The text of a value that is no number, with at most LONGEST_LABEL characters."""
     text = str(value)
-    return text if len(text) <= LONG else f"{text[: LONG - 3]}..."
+    return text if len(text) <= LONGEST_LABEL else f"{text[: LONGEST_LABEL - 3]}..."
 
 
 def write_report(
     path: Path, rows: Sequence[Mapping[str, Any]], axes: Sequence[str], summary: Mapping[str, Any], picture: Path
 ) -> None:
-    """A page that opens offline: how the points ended, the picture, the first 200 rows and every failure's reason."""
+    """Write a page that opens offline: how the points ended, picture, the first SHOWN_ROWS rows, and reasons of
+    failures.
+    """
     environment = page_environment(HERE)
     columns = [(axis, axis) for axis in axes] + [(name, label) for name, label in RESULTS]
     page = environment.get_template("report.html").render(
@@ -88,7 +93,9 @@ def write_report(
         ],
         more=max(0, len(rows) - SHOWN_ROWS),
         failures=[
-            (one["point"], _place(one, axes), one["status"], one["reason"]) for one in rows if one["status"] != SOLVED
+            (one["point"], _axis_values(one, axes), one["status"], one["reason"])
+            for one in rows
+            if one["status"] != SOLVED
         ][:SHOWN_ROWS],
         picture=base64.b64encode(picture.read_bytes()).decode("ascii"),
     )

@@ -1,4 +1,4 @@
-"""A whole sweep: from a space of designs to the folder with its table."""
+"""The whole sweep: from a space of designs to the folder with its table."""
 
 import time
 from collections import Counter
@@ -17,10 +17,10 @@ from softdot.hardware import hardware
 from softdot.log import LOG_FILE, log_file
 from softdot.progress import Logged, Progress
 from softdot.sweeps import folder as sweep_folder
-from softdot.sweeps.points import REFUSED, STATUSES, Record, failed, solve_all
+from softdot.sweeps.points import REFUSED, STATUSES, Record, failed_record, solve_all
 from softdot.sweeps.sampling import sampling_warnings
 from softdot.sweeps.space import Point, Space
-from softdot.sweeps.table import check_tables, row
+from softdot.sweeps.table import check_tables, table_row
 
 
 def run_sweep(
@@ -37,17 +37,19 @@ def run_sweep(
     place = sweep_folder.check_folder(Path(out))
     configs = {config_hash(point.config): point.config for point in space.points if point.config is not None}
     records = {
-        name: found for name, config in configs.items() if (found := sweep_folder.kept(place, config)) is not None
+        name: found
+        for name, config in configs.items()
+        if (found := sweep_folder.stored_record(place, config)) is not None
     }
     missing = {name: config for name, config in configs.items() if name not in records}
     where = executor_for(scheduler, space.sweep.workers)
     with ExitStack() as stack:
-        measured = _measured(0, len(records))
+        measured = _work_summary(0, len(records))
         if missing:
             measured = _solve(missing, records, where, place, progress or Logged(), stack)
-        ends = [_record(point, records) for point in space.points]
-        summary = {**_heading(space, ends), "scheduler": scheduler, **measured, "hardware": hardware()}
-        rows = [row(number, space.points[number].values, record) for number, record in enumerate(ends)]
+        ends = [_record_of_point(point, records) for point in space.points]
+        summary = {**_design_summary(space, ends), "scheduler": scheduler, **measured, "hardware": hardware()}
+        rows = [table_row(number, space.points[number].values, record) for number, record in enumerate(ends)]
         sweep_folder.finish(place, rows, list(space.points[0].values), space.text, summary)
     return summary
 
@@ -60,31 +62,33 @@ def _solve(
     progress: Progress,
     stack: ExitStack,
 ) -> dict[str, Any]:
-    """Add what is missing to the records and to the folder, which is made once somebody can work.
+    """Solve the missing points into records and folder, which is made once a worker is ready; a summary of the work.
 
-    stack : gives the folder up at its end, so that no other sweep writes it meanwhile.
+    stack : releases the folder at its end, so that no other sweep writes it meanwhile.
     """
     reused, count = len(records), len(records) + len(missing)
     begun = time.perf_counter()
     with where as executor:
-        sweep_folder.begin(place)
-        stack.callback(unlock_folder, sweep_folder.take(place))
-        sweep_folder.sweep_up(place)
-        stack.callback(sweep_folder.sweep_up, place)
+        sweep_folder.make_folder(place)
+        stack.callback(unlock_folder, sweep_folder.hold_folder(place))
+        sweep_folder.remove_half_written(place)
+        stack.callback(sweep_folder.remove_half_written, place)
         workers = executor.places
         ready = time.perf_counter()
         with log_file(place / LOG_FILE):
             progress.stage("solve")
             progress.step(reused, count, "")
             for name, record in solve_all(executor, missing):
-                records[name] = sweep_folder.keep(place, missing[name], record)
+                records[name] = sweep_folder.store_record(place, missing[name], record)
                 progress.step(len(records), count, record["reason"] or "")
         end = time.perf_counter()
-    return _measured(len(missing), reused, workers, ready - begun, end - ready)
+    return _work_summary(len(missing), reused, workers, ready - begun, end - ready)
 
 
-def _measured(solved: int, reused: int, workers: int = 0, start_s: float = 0.0, solve_s: float = 0.0) -> dict[str, Any]:
-    """What this call did, and how fast."""
+def _work_summary(
+    solved: int, reused: int, workers: int = 0, start_s: float = 0.0, solve_s: float = 0.0
+) -> dict[str, Any]:
+    """The numbers of solved and reused points of this call, and its speed."""
     return {
         "solved_now": solved,
         "reused": reused,
@@ -94,15 +98,15 @@ def _measured(solved: int, reused: int, workers: int = 0, start_s: float = 0.0, 
     }
 
 
-def _record(point: Point, records: Mapping[str, Record]) -> Record:
-    """The record of a point; one without configuration has its reason."""
+def _record_of_point(point: Point, records: Mapping[str, Record]) -> Record:
+    """The record of a point; of one without configuration, that of its refusal."""
     if point.config is None:
-        return failed(REFUSED, point.reason or "")
+        return failed_record(REFUSED, point.reason or "")
     return records[config_hash(point.config)]
 
 
-def _heading(space: Space, ends: list[Record]) -> dict[str, Any]:
-    """Format, design and how the points ended."""
+def _design_summary(space: Space, ends: list[Record]) -> dict[str, Any]:
+    """Format, design and the number of points by how they ended."""
     from softdot.version import installed_version
 
     ended = Counter(record["status"] for record in ends)

@@ -18,7 +18,7 @@ Count = Annotated[int, Field(ge=1, le=MOST_POINTS)]
 
 
 class Axis(Table):
-    """One direction of the space: a key, or several that always have the same value, and its values."""
+    """One direction of the space: a key and its values, or several keys that always have the same value."""
 
     key: str | None = Field(None, description="dotted key, such as segment.medium1.thickness_mm")
     keys: tuple[str, ...] = Field((), description="instead of key: several keys that get the same value")
@@ -54,6 +54,7 @@ class Axis(Table):
         return self
 
     def _require_values_alone(self) -> None:
+        """ValueError where there is no value, or low, high or n besides."""
         if not self.values:
             raise ValueError("values = []: must have at least 1 value")
         for name in ("low", "high", "n"):
@@ -66,7 +67,7 @@ class Axis(Table):
 
 
 class Sweep(Table):
-    """How the space is sampled."""
+    """The way in which the space is sampled."""
 
     sampling: Literal["grid", "list", "latin-hypercube", "sobol"] = Field(
         "grid", description="grid: every combination; list: first values together, second values together, …"
@@ -91,7 +92,7 @@ class Sweep(Table):
         return self
 
     def _require_fitting(self, axis: Axis, name: str) -> None:
-        """An axis says as many values as the sampling needs, no more."""
+        """ValueError unless an axis states as many values as the sampling needs, and no more."""
         if self.sampling == "grid" and axis.values is None and axis.n is None:
             raise ValueError(f"{name}.n is missing: a grid needs the number of values from low to high")
         if self.sampling != "grid" and axis.n is not None:
@@ -108,7 +109,7 @@ class Sweep(Table):
             )
 
     def _require_apart(self) -> None:
-        """No key is set twice, and none lies inside another one."""
+        """ValueError where a key is set twice, or one lies inside another."""
         ways = [(key, key_path(key)) for axis in self.axes for key in axis.names()]
         for number, (key, way) in enumerate(ways):
             for other, before in ways[:number]:
@@ -117,19 +118,20 @@ class Sweep(Table):
                     raise ValueError(f"axes: '{other}' and '{key}' set the same key; remove one of them")
 
 
-def sampled(sweep: Sweep) -> list[tuple[Any, ...]]:
+def sample_points(sweep: Sweep) -> list[tuple[Any, ...]]:
     """The value of each axis at each point. InputError when a grid has too many points."""
     if sweep.sampling == "grid":
-        return _grid([levels(axis) for axis in sweep.axes])
+        return _grid([grid_values(axis) for axis in sweep.axes])
     if sweep.sampling == "list":
         return list(zip(*(axis.values or () for axis in sweep.axes), strict=True))
     return [
-        tuple(at(axis, float(share)) for axis, share in zip(sweep.axes, shares, strict=True))
+        tuple(value_at_share(axis, float(share)) for axis, share in zip(sweep.axes, shares, strict=True))
         for shares in _unit_cube(sweep)
     ]
 
 
 def _grid(values: list[list[Any]]) -> list[tuple[Any, ...]]:
+    """All combinations of the values of the axes. InputError for too many."""
     count = math.prod(map(len, values))
     if count > MOST_POINTS:
         sizes = " × ".join(str(len(one)) for one in values)
@@ -137,15 +139,15 @@ def _grid(values: list[list[Any]]) -> list[tuple[Any, ...]]:
     return list(itertools.product(*values))
 
 
-def levels(axis: Axis) -> list[Any]:
+def grid_values(axis: Axis) -> list[Any]:
     """The values of an axis of a grid."""
     if axis.values is not None:
         return list(axis.values)
-    return [at(axis, share) for share in np.linspace(0.0, 1.0, axis.n or 2).tolist()]
+    return [value_at_share(axis, share) for share in np.linspace(0.0, 1.0, axis.n or 2).tolist()]
 
 
-def at(axis: Axis, share: float) -> Any:
-    """The value at a share, 0 to 1, of an axis; values in a list have equal shares. Twelve digits."""
+def value_at_share(axis: Axis, share: float) -> Any:
+    """The value at a share, 0 to 1, of an axis, to twelve digits; values in a list have equal shares."""
     if axis.values is not None:
         return axis.values[min(int(share * len(axis.values)), len(axis.values) - 1)]
     low, high = float(axis.low or 0.0), float(axis.high or 0.0)
@@ -154,7 +156,7 @@ def at(axis: Axis, share: float) -> Any:
 
 
 def share_of(axis: Axis, value: Any) -> float:
-    """The share, 0 to 1, of an axis at which it has a value; the middle of its share for one in a list.
+    """The share, 0 to 1, at which an axis has a value; the middle of its share for one in a list.
 
     >>> share_of(Axis(key="a", low=1.0, high=100.0, scale="log"), 10.0)
     0.5
@@ -180,7 +182,7 @@ def _unit_cube(sweep: Sweep) -> Floats:
 
 
 def sampling_warnings(sweep: Sweep) -> list[str]:
-    """What a user should know about this design."""
+    """Warnings of a design that is not balanced."""
     count = sweep.points or 1
     if sweep.sampling == "sobol" and count & (count - 1):
         return [f"sweep.points = {count}: Sobol points are balanced only for powers of two"]

@@ -17,7 +17,7 @@ from softdot.config.loading import config_from
 from softdot.config.schema import Config
 from softdot.config.settings import naming_the_flag, with_settings
 from softdot.config.toml import key_path, read_toml, with_value
-from softdot.sweeps.sampling import Axis, Sweep, sampled
+from softdot.sweeps.sampling import Axis, Sweep, sample_points
 
 
 class _File(Table):
@@ -37,7 +37,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Space:
-    """Every point of a sweep, checked. tables : SPACE.toml as read, text : as written, None for one without a file."""
+    """Every point of a sweep, checked. tables : SPACE.toml as read. text : as written, None without a file."""
 
     tables: Mapping[str, Any]
     sweep: Sweep
@@ -46,7 +46,7 @@ class Space:
 
 
 def load_space(path: Path | str, settings: Sequence[str] = ()) -> Space:
-    """Read and check SPACE.toml. InputError as space_from, and for a file that cannot be read.
+    """Read and check SPACE.toml. InputError as in space_from, and for a file that cannot be read.
 
     settings : 'dotted.key=value' after the file.
     """
@@ -59,19 +59,20 @@ def load_space(path: Path | str, settings: Sequence[str] = ()) -> Space:
 def space_from(tables: Mapping[str, Any]) -> Space:
     """The points of a space. InputError with one sentence for a bad table [sweep] and for a bad axis.
 
-    An axis is bad when it has a value (of low and high, one of them) with which no point can be built, or when its key
-    acts beside no value of another axis. A point whose combination alone cannot be built stays, with its reason. At a
-    point where a key does not act beside the values of the axes it is left out, be it of the file or of an axis.
+    An axis is bad when no point can be built with one of its values (of low and high, one of them), or when its key
+    acts beside no value of another axis. A point whose combination alone cannot be built stays, with its reason. A key,
+    of the file or of an axis, is left out at a point where it does not act beside the values of the axes.
     """
     sweep = _sweep(tables)
     base = {name: table for name, table in tables.items() if name != "sweep"}
-    rows = sampled(sweep)
+    rows = sample_points(sweep)
     points = tuple(_point(base, sweep, row) for row in rows)
     _refuse_bad_axes(base, sweep, rows, points)
     return Space(tables, sweep, points)
 
 
 def _sweep(tables: Mapping[str, Any]) -> Sweep:
+    """The table [sweep]. InputError."""
     if "sweep" not in tables:
         raise InputError("sweep is missing: SPACE.toml needs a table [sweep] with at least one [[sweep.axes]]")
     own = {"sweep": tables["sweep"]}
@@ -84,15 +85,15 @@ def _sweep(tables: Mapping[str, Any]) -> Sweep:
 def _point(base: Mapping[str, Any], sweep: Sweep, row: tuple[Any, ...]) -> Point:
     """The point with these values of the axes. InputError for a key that leads nowhere."""
     values = {key: row[number] for number, axis in enumerate(sweep.axes) for key in axis.names()}
-    tables = _tables(base, sweep, row)
+    tables = _tables_at_point(base, sweep, row)
     try:
         return Point(values, config_from(with_default_design(tables)))
     except InputError as error:
         return Point(values, None, str(error))
 
 
-def _tables(base: Mapping[str, Any], sweep: Sweep, row: tuple[Any, ...]) -> dict[str, Any]:
-    """The file's tables with the values of the axes, without what does not act beside them. InputError as _point."""
+def _tables_at_point(base: Mapping[str, Any], sweep: Sweep, row: tuple[Any, ...]) -> dict[str, Any]:
+    """The tables with the values of the axes, without keys that do not act beside them. InputError as in _point."""
     tables = dict(base)
     for number, axis in enumerate(sweep.axes):
         for key in axis.names():
@@ -109,15 +110,18 @@ def _tables(base: Mapping[str, Any], sweep: Sweep, row: tuple[Any, ...]) -> dict
 def _refuse_bad_axes(
     base: Mapping[str, Any], sweep: Sweep, rows: list[tuple[Any, ...]], points: tuple[Point, ...]
 ) -> None:
+    """InputError for an axis with a value that no point can have, or with a key that never acts."""
     good = [row for row, point in zip(rows, points, strict=True) if point.config is not None]
     if not good:
-        raise InputError(_of_axis(sweep, points[0].reason or ""))
+        raise InputError(_with_axis_name(sweep, points[0].reason or ""))
     beside = [
         (*good[0][:n], value, *good[0][n + 1 :]) for n, axis in enumerate(sweep.axes) for _, value in _extremes(axis)
     ]
     for number, axis in enumerate(sweep.axes):
         acting = (
-            has_value(_tables(base, sweep, row), key_path(key)) for row in (*good, *beside) for key in axis.names()
+            has_value(_tables_at_point(base, sweep, row), key_path(key))
+            for row in (*good, *beside)
+            for key in axis.names()
         )
         if not any(acting):  # by chance few random points may have none of the values beside which it acts
             raise InputError(f"sweep.axes[{number}]: {axis.names()[0]} acts beside no value of another axis")
@@ -130,14 +134,14 @@ def _refuse_bad_axes(
 
 
 def _extremes(axis: Axis) -> Iterator[tuple[str, Any]]:
-    """The values that decide whether an axis is good, with their names."""
+    """Name and value of each of the values that decide whether an axis is good."""
     if axis.values is not None:
         yield from ((f"values[{number}]", value) for number, value in enumerate(axis.values))
     else:
         yield from (("low", axis.low), ("high", axis.high))
 
 
-def _of_axis(sweep: Sweep, reason: str) -> str:
+def _with_axis_name(sweep: Sweep, reason: str) -> str:
     """The reason, after the name of the axis whose key it begins with."""
     for number, axis in enumerate(sweep.axes):
         if any(reason.startswith(key) for key in axis.names()):

@@ -1,4 +1,4 @@
-"""The table of a sweep as Apache Parquet."""
+"""The table of a sweep as an Apache Parquet file."""
 
 import json
 from collections.abc import Mapping
@@ -14,44 +14,45 @@ from softdot.sweeps.points import Record
 if TYPE_CHECKING:
     import pyarrow as pa
 
-CURVES = (
+CURVE_KEYS = (
     "indentation_mm", "reaction_force_N", "film_charge_pC", "open_circuit_voltage_V", "readout_voltage_V",
 )  # fmt: skip
-HEAD = ("status", "reason", "seconds", "config_hash")
-LEFT_OUT = ("format", "softdot_version", "key", "config", *HEAD)
+STATUS_KEYS = ("status", "reason", "seconds", "config_hash")
+EXCLUDED_KEYS = ("format", "softdot_version", "key", "config", *STATUS_KEYS)
 
 
-def row(number: int, values: Mapping[str, Any], record: Record) -> dict[str, Any]:
-    """Number, values of the axes, how it ended, peaks of the curves, and every number of the summary.
+def table_row(number: int, values: Mapping[str, Any], record: Record) -> dict[str, Any]:
+    """A row of the table: number of the point, values of the axes, end, peaks of the curves, and all numbers of the
+    summary.
 
     Nested keys are joined by dots. The peak of a curve is its value of largest magnitude, with its sign.
     """
-    numbers = {key: value for key, value in record.items() if key not in LEFT_OUT}
+    numbers = {key: value for key, value in record.items() if key not in EXCLUDED_KEYS}
     return {
         "point": number,
         **values,
-        **{key: record.get(key) for key in HEAD},
-        **{f"peak.{name}": max(record[name], key=abs) for name in CURVES if record.get(name)},
-        **_flat(plain(numbers)),
+        **{key: record.get(key) for key in STATUS_KEYS},
+        **{f"peak.{name}": max(record[name], key=abs) for name in CURVE_KEYS if record.get(name)},
+        **_with_joined_keys(plain(numbers)),
     }
 
 
-def _flat(tables: Mapping[str, Any], before: str = "") -> dict[str, Any]:
-    """{'film': {'capacitance_pF': 24}} -> {'film.capacitance_pF': 24}."""
+def _with_joined_keys(tables: Mapping[str, Any], before: str = "") -> dict[str, Any]:
+    """Nested tables with keys joined by dots: {'film': {'capacitance_pF': 24}} -> {'film.capacitance_pF': 24}."""
     flat: dict[str, Any] = {}
     for key, value in tables.items():
-        flat |= _flat(value, f"{before}{key}.") if isinstance(value, dict) else {f"{before}{key}": value}
+        flat |= _with_joined_keys(value, f"{before}{key}.") if isinstance(value, dict) else {f"{before}{key}": value}
     return flat
 
 
 def check_tables() -> None:
-    """InputError, before any work, where the library of Parquet tables is not installed."""
+    """InputError, before any work, where pyarrow, the library for Parquet, is not installed."""
     if find_spec("pyarrow") is None:
         raise InputError("Parquet tables need pyarrow, which softdot alone does not: pip install 'softdot[sweep]'")
 
 
 def write_table(path: Path, rows: list[dict[str, Any]]) -> None:
-    """Write Parquet that never exists half-written; a row lacks what other rows have: null."""
+    """Write rows as Parquet, whole or not at all; a key that a row lacks becomes null."""
     import pyarrow as pa
     from pyarrow import parquet
 
@@ -62,7 +63,7 @@ def write_table(path: Path, rows: list[dict[str, Any]]) -> None:
 
 
 def _column(values: list[Any]) -> "pa.Array":
-    """Numbers, texts or lists of them with their own type; what has no common type as JSON."""
+    """A column of numbers, texts or lists with a type of its own; values without a common type as JSON."""
     import pyarrow as pa
 
     try:

@@ -54,9 +54,9 @@ KINDS = {
     "point": (
         lambda folder: (
             (folder / "points").mkdir(exist_ok=True),
-            sweep_folder.keep(folder, CONFIG, {"status": "solved"}),
+            sweep_folder.store_record(folder, CONFIG, {"status": "solved"}),
         ),
-        lambda folder: sweep_folder.kept(folder, CONFIG),
+        lambda folder: sweep_folder.stored_record(folder, CONFIG),
     ),
 }
 

@@ -14,7 +14,7 @@ from softdot.cli import main
 from softdot.sweeps import folder as store
 from softdot.sweeps import read_table, run_sweep, space_from
 from softdot.sweeps import run as run_module
-from softdot.sweeps.points import CRASHED, LOST, NOT_CONVERGED, REFUSED, failed, solve_point
+from softdot.sweeps.points import CRASHED, LOST, NOT_CONVERGED, REFUSED, failed_record, solve_point
 from softdot.sweeps.table import write_table
 from tests.softdot.complaints import complaints
 from tests.softdot.stand_ins import result_of
@@ -197,7 +197,7 @@ ENDS = {CRASHED: [0.2], LOST: [0.2], REFUSED: [], NOT_CONVERGED: []}
 @pytest.mark.parametrize(("accident", "again"), ENDS.items())
 def test_only_accidents_are_tried_again(presses, monkeypatch, tmp_path, out, accident, again):
     def unlucky(config):
-        return solve_point(config) if config.press.indentation_mm != 0.2 else failed(accident, "so it was")
+        return solve_point(config) if config.press.indentation_mm != 0.2 else failed_record(accident, "so it was")
 
     monkeypatch.setattr(run_module, "solve_all", partial(solved_here, solve=unlucky))
     sweep(tmp_path, out, depths(0.1, 0.2))

@@ -143,7 +143,7 @@ class DesignWork:
 
     def done(self, wanted: list[TriedDesign]) -> None:
         """Press and read with these designs."""
-        from softdot.sweeps.points import all_ended, failed
+        from softdot.sweeps.points import failed_record, records_as_completed
 
         search, space = self.request.search, self.request.space
         count = len(self.request.compared) + len(space.points) + search.rounds * search.each
@@ -152,7 +152,7 @@ class DesignWork:
         for one in wanted:
             kept = self._kept(one)
             if one.config is None:
-                kept = {**failed("refused", one.reason or ""), "readings": [], "least": None, "seconds": 0.0}
+                kept = {**failed_record("refused", one.reason or ""), "readings": [], "least": None, "seconds": 0.0}
             if kept is None:
                 missing[one.name] = one
             else:
@@ -160,7 +160,7 @@ class DesignWork:
         self._progress.stage("designs")
         self._progress.step(len(self.found.records), count, "")
         tasks = {name: (self._task(one),) for name, one in missing.items()}
-        for name, record in all_ended(self._executor, design_record, tasks):
+        for name, record in records_as_completed(self._executor, design_record, tasks):
             whole = {"readings": [], "least": None, "seconds": None, **record}  # a worker that died tells nothing
             self.found.records[name] = self._keep(missing[name], whole)
             self._progress.step(len(self.found.records), count, _in_short(name, whole))

@@ -13,7 +13,7 @@ from scipy.stats import norm, qmc
 
 from foundation.arrays import Bools, Floats
 from softdot.bayesian_search import fitted_process, largest_apart, steps_beside
-from softdot.sweeps.sampling import Axis, at, share_of
+from softdot.sweeps.sampling import Axis, share_of, value_at_share
 
 FEWEST = 3
 """Designs that read, below which the next ones fill the space instead."""
@@ -66,7 +66,7 @@ def candidates(axes: Sequence[Axis], best: Floats | None, seed: int) -> Floats:
 
 def rounded(axes: Sequence[Axis], shares: Floats) -> tuple[Any, ...]:
     """Values at shares (d,) of the axes, numbers between low and high to two digits, as one would make them."""
-    return tuple(_rounded(axis, at(axis, float(share))) for axis, share in zip(axes, shares, strict=True))
+    return tuple(_rounded(axis, value_at_share(axis, float(share))) for axis, share in zip(axes, shares, strict=True))
 
 
 def _rounded(axis: Axis, value: Any) -> Any:

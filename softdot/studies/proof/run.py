@@ -114,14 +114,14 @@ def _tried(
         return
     from foundation.cache import cache_folder
     from softdot.executors import executor_for
-    from softdot.sweeps.points import all_ended
+    from softdot.sweeps.points import records_as_completed
 
     terms = Terms(cache_folder().resolve(), request.limit_s)
     arguments = {case.name: (case, terms, place.resolve(), program) for case in missing}
     with executor_for(request.scheduler, request.workers) as executor:
         proof_files.begin(place)  # once somebody can work
         with log_file(place / LOG_FILE):
-            for name, record in all_ended(executor, prove_case, arguments):
+            for name, record in records_as_completed(executor, prove_case, arguments):
                 yield name, {"score": None, **record}
 
 

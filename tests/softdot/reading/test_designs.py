@@ -20,8 +20,8 @@ from softdot.reading.designs.results import finish, reading_rows
 from softdot.reading.designs.run import FOLDER, AskedReading, DesignWork, searched
 from softdot.reading.designs.search import pareto, propose
 from softdot.sweeps.folder import read_table
-from softdot.sweeps.points import failed
-from softdot.sweeps.sampling import Axis, at, share_of
+from softdot.sweeps.points import failed_record
+from softdot.sweeps.sampling import Axis, share_of, value_at_share
 from tests.cases import for_each
 from tests.softdot.reading.made_kernel import made_kernel
 
@@ -113,7 +113,7 @@ def test_a_value_of_an_axis_has_a_share_and_comes_back():
         (Axis(key="a", low=0.1, high=10.0, scale="log"), (0.1, 0.7, 10.0)),
         (Axis(key="a", values=("free", "clamped", "elastic")), ("free", "clamped", "elastic")),
     ):
-        assert [at(axis, share_of(axis, value)) for value in values] == pytest.approx(list(values))
+        assert [value_at_share(axis, share_of(axis, value)) for value in values] == pytest.approx(list(values))
 
 
 AXES = (
@@ -131,7 +131,9 @@ def made_force_N(row):
 
 def test_what_is_tried_next_comes_nearer_to_the_best():
     random = np.random.default_rng(4)
-    rows = [tuple(at(axis, share) for axis, share in zip(AXES, random.random(3), strict=True)) for _ in range(8)]
+    rows = [
+        tuple(value_at_share(axis, share) for axis, share in zip(AXES, random.random(3), strict=True)) for _ in range(8)
+    ]
     before = min(filter(None, map(made_force_N, rows)))
     for number in range(4):
         chosen = propose(AXES, rows, [made_force_N(row) for row in rows], 3, number)
@@ -183,11 +185,11 @@ class Workers:
             if len(self.done) == self.stop_after:
                 raise KeyboardInterrupt
             self.done.append(name)
-            yield name, failed(self.status, "at 0.1 mm") if name in self.refuse else made_record(asked)
+            yield name, failed_record(self.status, "at 0.1 mm") if name in self.refuse else made_record(asked)
 
 
 def search_with(workers, request, folder, monkeypatch):
-    monkeypatch.setattr("softdot.sweeps.points.all_ended", workers.all_ended)
+    monkeypatch.setattr("softdot.sweeps.points.records_as_completed", workers.all_ended)
     folder.mkdir(exist_ok=True)
     return searched(DesignWork(request, ASKED, folder, None, Untold()))
 
