@@ -1,4 +1,4 @@
-"""All problems of softdot verify, in the order in which they are told."""
+"""All problems of softdot verify, in the order in which they are reported."""
 
 from foundation.errors import InputError
 from foundation.nearest_name import nearest_name_hint
@@ -28,7 +28,7 @@ PROBLEMS: dict[str, Problem] = {problem.name: problem for family in FAMILIES for
 
 
 def chosen_problems(names: list[str]) -> list[Problem]:
-    """Those of these names, in the order of the catalogue; all for no name. InputError for one that is unknown."""
+    """The problems of these names, in the order of the catalogue; all for no name. InputError for an unknown name."""
     for name in names:
         if name not in PROBLEMS:
             raise InputError(f"--only {name}: no such problem; {nearest_name_hint(name, PROBLEMS)}")

@@ -21,9 +21,10 @@ MAX_ITERATIONS, TOLERANCE = 30, 1e-10  # of the contact forces
 
 
 class DraggedBlock:
-    """block : base at z = 0; x, u, move : unknowns, displacement (n, 3) and that of the dot, last converged.
+    """A block with base at z = 0 under a dot.
 
-    radius : of a cylinder along y, None for a flat plate. level : all nodes of one height move alike.
+    radius : of a cylinder along y, None for a flat plate. level : all nodes of one height move alike. x, u, move :
+    unknowns, displacement (n, 3) and that of the dot, as last converged.
     """
 
     def __init__(self, block: Grid, law: MediumLaw, radius: float | None, friction: float, level: bool = False) -> None:
@@ -55,7 +56,7 @@ class DraggedBlock:
 
     @property
     def force(self) -> Floats:
-        """Of the dot on the block (3,)."""
+        """Force (3,) of the dot on the block."""
         pressure = self.x[self.contact.pressure_dofs]
         if isinstance(self.touch, ContactFacets):
             return self.contact.force(self.u, self.move, pressure)
@@ -63,7 +64,7 @@ class DraggedBlock:
         return self.touch.force(self.u, self.move, pressure, self.x[self.touch.friction_dofs])
 
     def drag(self, x: float, z: float) -> Floats:
-        """Move the dot to (x, z) in one step; the force there. ArithmeticError."""
+        """Move the dot to (x, z) in one step and return its force (3,) there. ArithmeticError."""
         move, unknown, before = np.array([x, 0.0, z]), self.x.copy(), None
         for _ in range(MAX_ITERATIONS):
             u = np.append(unknown, 0.0)[self.numbers]
@@ -78,6 +79,7 @@ class DraggedBlock:
         raise ArithmeticError(f"no equilibrium at x = {x:g}, z = {z:g}")
 
     def _assemble(self, trial: Trial) -> tuple[Floats, sp.csc_matrix]:
+        """Residual and tangent of a trial state."""
         count, entries = len(trial.x), []
         residual = np.zeros(count + 1)  # the last one collects what is prescribed
         for term in self.terms:

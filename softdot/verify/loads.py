@@ -15,8 +15,8 @@ from solve.terms.contact import SHAPES, SLOPES, WEIGHTS
 class FollowerPressure(Term):
     """Pressure on facets (k, 6), along the normal of the deformed surface: r = p int N n da.
 
-    The tangent's symmetric part: the whole where the facets' edge slides on planes of symmetry, since the load then
-    has a potential (Wriggers, Nonlinear Finite Element Methods, 2008, sec. 4.2.5).
+    Its tangent is the symmetric part, which is the whole where the facets' edge slides on planes of symmetry, since the
+    load then has a potential (Wriggers, Nonlinear Finite Element Methods, 2008, sec. 4.2.5).
     """
 
     points: Floats
@@ -26,11 +26,11 @@ class FollowerPressure(Term):
 
     @property
     def groups(self) -> tuple[Ints, ...]:
-        """Unknowns of the facets."""
+        """Numbers of the unknowns of the facets."""
         return (self.dofs,)
 
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
-        """Matrices and residuals of the facets."""
+        """Matrices and residuals of the facets as one block."""
         position = (self.points + trial.displacement)[self.facets]
         a, b = np.einsum("qnd,kni->dkqi", SLOPES, position)
         re = self.value * np.einsum("q,qn,kqi->kni", WEIGHTS, SHAPES, np.cross(a, b)).reshape(-1, 18)

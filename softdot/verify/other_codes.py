@@ -1,4 +1,4 @@
-"""What other codes computed once, with their version, their mesh and the command that does it again."""
+"""Results that other codes computed once, with their version, mesh and the command that computes them again."""
 
 import tomllib
 from dataclasses import dataclass
@@ -8,7 +8,9 @@ from importlib.resources import files
 
 @dataclass(frozen=True)
 class ByAnotherCode:
-    """One number; source : code, version and mesh in words; command : of this project, that computes it again."""
+    """A number from another code. source : code, version and mesh in words. command : of this project, that computes it
+    again.
+    """
 
     value: float
     source: str
@@ -17,11 +19,11 @@ class ByAnotherCode:
 
 @cache
 def references() -> dict[str, ByAnotherCode]:
-    """All of them by name, from other_codes.toml."""
+    """All results of other codes by name, from other_codes.toml."""
     tables = tomllib.loads(files(__package__).joinpath("other_codes.toml").read_text("utf-8"))
     return {name: ByAnotherCode(**table) for name, table in tables.items()}
 
 
 def reference(name: str) -> ByAnotherCode:
-    """One of them."""
+    """The result of another code with this name. KeyError."""
     return references()[name]

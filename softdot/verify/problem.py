@@ -1,4 +1,4 @@
-"""A verification problem, and what became of it on this machine."""
+"""A verification problem, and its result on this machine."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,10 +17,10 @@ ROUND_OFF = 1e-9
 class Problem:
     """One number with a reference that does not come from softdot.
 
-    name : of lower-case words and hyphens. basis : from where the bound follows, a clause without a capital.
-    reference : the value to be met. solved : our value, from the number of elements of a mesh where meshes names some,
-    coarse to fine, of which the last one counts; ArithmeticError where it has no solution. limit : the reference is
-    what ever finer meshes tend to, so that its errors have an order, and no theory with an error of its own.
+    name : of lower-case words and hyphens. basis : the reason for the bound, a clause without a capital. reference :
+    the value to be met. solve : our value, from the number of elements of a mesh where meshes names some, coarse to
+    fine, of which the last one counts; ArithmeticError where it has no solution. limit : whether the reference is what
+    ever finer meshes tend to, so that its errors have an order, and not a theory with an error of its own.
     """
 
     name: str
@@ -30,23 +30,23 @@ class Problem:
     bound_percent: float
     basis: str
     reference: Callable[[], float]
-    solved: Callable[..., float]
+    solve: Callable[..., float]
     meshes: tuple[int, ...] = ()
     limit: bool = False
 
     def outcome(self) -> dict[str, Any]:
-        """Solve it: name, reference, value, deviation and bound in per cent, and whether it passed.
+        """Solve the problem: name, reference, value, deviation and bound in percent, and whether it passed.
 
         Where there is no solution, value and deviation are None and failure says why.
         """
         reference = self.reference()
         try:
-            values = [float(self.solved(n)) for n in self.meshes] or [float(self.solved())]
+            values = [float(self.solve(n)) for n in self.meshes] or [float(self.solve())]
         except (ArithmeticError, LinAlgError, MeshingError) as error:
-            return {**self._told(reference), "value": None, "deviation_percent": None, "failure": str(error)}
+            return {**self._heading(reference), "value": None, "deviation_percent": None, "failure": str(error)}
         deviation = 100.0 * (values[-1] / reference - 1.0)
         return {
-            **self._told(reference),
+            **self._heading(reference),
             "value": values[-1],
             "deviation_percent": deviation,
             "passed": bool(abs(deviation) <= self.bound_percent),
@@ -54,7 +54,8 @@ class Problem:
             "observed_order": observed_order(self.meshes, np.array(values) / reference - 1.0) if self.limit else None,
         }
 
-    def _told(self, reference: float) -> dict[str, Any]:
+    def _heading(self, reference: float) -> dict[str, Any]:
+        """The part of the result that is known before solving; passed is False there."""
         return {
             "name": self.name,
             "title": self.title,

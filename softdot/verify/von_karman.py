@@ -12,7 +12,8 @@ START = 1e-4  # radius at which the regular solution begins
 
 
 def centre_deflection(load: float, patch: float) -> float:
-    """w/t at the centre under a pressure on r < patch a; load = F a^2 / (E t^4), F the whole force.
+    """Deflection over thickness at the centre under a pressure on r < patch a; load = F a^2 / (E t^4), F the whole
+    force.
 
     With w in t, r in a, u in t^2 / a (Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells, 1959, eq. 231):
         u'' + u'/r - u/r^2 = -(1 - nu) w'^2 / (2 r) - w' w''
@@ -27,7 +28,7 @@ def centre_deflection(load: float, patch: float) -> float:
 
 
 def _equations(load: float, patch: float) -> Callable[[Floats, Floats], Floats]:
-    """Derivatives of (w, w', w'', u, u')."""
+    """The right-hand side of the equations: derivatives of (w, w', w'', u, u') by the radius."""
 
     def derivatives(r: Floats, y: Floats) -> Floats:
         _, slope, curvature, u, stretch = y
@@ -41,5 +42,5 @@ def _equations(load: float, patch: float) -> Callable[[Floats, Floats], Floats]:
 
 
 def _edges(centre: Floats, edge: Floats) -> Floats:
-    """Smooth at the centre (w' and u linear in r), clamped at the edge."""
+    """Residuals of the boundary conditions: smooth at the centre (w' and u linear in r), clamped at the edge."""
     return np.array([centre[1] - START * centre[2], centre[3] - START * centre[4], edge[0], edge[1], edge[3]])

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.sparse.linalg import spsolve
 
 from foundation.arrays import Floats, Ints
-from softdot.verify.lattice import KUHN
+from softdot.verify.lattice import KUHN_PATHS
 from solve.fem.assembly import scatter
 from solve.fem.pattern import build_pattern
 from solve.fem.shape_functions import TET_EDGES
@@ -28,7 +28,7 @@ def box(cells: int, size: tuple[float, float, float] = (1.0, 1.0, 1.0), jitter: 
     offset = [stride @ [(k >> a) & 1 for a in range(3)] for k in range(8)]
     for cube in itertools.product(range(cells), repeat=3):
         vertex = [stride @ cube + shift for shift in offset]
-        tets += [[vertex[k] for k in path] for path in KUHN]
+        tets += [[vertex[k] for k in path] for path in KUHN_PATHS]
     linear = np.array(tets)
     edge = corners[linear[:, 1:]] - corners[linear[:, :1]]
     flip = np.linalg.det(edge) < 0

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from foundation.arrays import Floats, Ints
-from softdot.verify.lattice import FACES, Grid, disc
+from softdot.verify.lattice import FACE_NODES, Grid, disc
 
 CCX = shutil.which("ccx")
 FACE_NUMBER = (1, 2, 3, 4)  # CalculiX numbers the faces 123, 142, 243, 341: the order of FACES
@@ -111,7 +111,7 @@ def _elements(name: str, tets: Ints, first: int) -> list[str]:
 
 def _surface(name: str, body: Grid, on: Floats, first: int) -> list[str]:
     """Faces whose nodes all lie on a surface."""
-    element, face = np.nonzero(on[body.tets[:, FACES]].all(axis=2))
+    element, face = np.nonzero(on[body.tets[:, FACE_NODES]].all(axis=2))
     rows = [f"{first + e + 1}, S{FACE_NUMBER[f]}" for e, f in zip(element, face, strict=True)]
     return [f"*SURFACE, NAME={name}, TYPE=ELEMENT", *rows]
 

@@ -8,7 +8,7 @@ CalculiX has no pressure unknown, hence nu = 0.45. Its penalties let the bodies 
 import pytest
 
 from softdot.verify.dragged_block import DraggedBlock
-from softdot.verify.lattice import graded, grid
+from softdot.verify.lattice import graded_coordinates, grid
 from solve.materials.laws import InvariantLaw, bulk_modulus
 from tests.verification.ccx_slide import CCX, Slide, forces
 from tests.verification.row import agrees
@@ -43,10 +43,10 @@ DRAG = Slide(
 
 def block():
     """3 x 1 mm in the plane, fine under the cylinder, one cell across."""
-    outside = graded(0.5, 1.5, CELL_MM, 0.25)
+    outside = graded_coordinates(0.5, 1.5, CELL_MM, 0.25)
     inside = [CELL_MM * i for i in range(-4, 5)]
     x = [*-outside[::-1], *inside, *outside]
-    return grid((x, [-CELL_MM / 2, CELL_MM / 2], 1.0 - graded(0.0, 1.0, CELL_MM, 0.25)[::-1]))
+    return grid((x, [-CELL_MM / 2, CELL_MM / 2], 1.0 - graded_coordinates(0.0, 1.0, CELL_MM, 0.25)[::-1]))
 
 
 def dragged(case):

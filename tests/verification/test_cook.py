@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from softdot.verify.problems.cook import TRACTION, corner_rise, panel, rubber, slice_of
+from softdot.verify.problems.cook import TRACTION, corner_rise, neo_hookean_law, panel_mesh, slice_of
 from solve.fem.pattern import build_pattern
 from solve.fem.tangent import Tangent
 from solve.materials.laws import LinearLaw, bulk_modulus
@@ -27,7 +27,7 @@ def test_compressible_linear_panel(tied):
 
 def test_a_coarse_panel_does_not_lock():
     """From nu = 0.499 to 0.49999 the rise hardly changes, on 4 elements a side as in the limit of fine ones."""
-    law = {k: rubber(80.194, k * 80.194) for k in (500.0, 5e4)}
+    law = {k: neo_hookean_law(80.194, k * 80.194) for k in (500.0, 5e4)}
     coarse = [corner_rise(4, law[k]) for k in law]
     fine = [corner_rise(12, law[k]) for k in law]
     agrees("Cook, rise at K/G 5e4 over 500, 4 a side", coarse[1] / coarse[0], fine[1] / fine[0], 0.01)
@@ -39,8 +39,8 @@ def inf_sup(n: int, tied: bool) -> float:
     The smallest generalised eigenvalue of B K^-1 B^t against the pressure's mass matrix, times the shear modulus
     (Brezzi and Fortin, Mixed and Hybrid Finite Element Methods, 1991, sec. II.3).
     """
-    shape = panel(n)
-    body, prescribed = slice_of(shape, rubber(1.0, 1.0), tied)
+    shape = panel_mesh(n)
+    body, prescribed = slice_of(shape, neo_hookean_law(1.0, 1.0), tied)
     upper = body.assemble(build_pattern(body.terms[0].groups, body.count), np.zeros(body.count))[1]
     tangent = Tangent(upper).full().toarray()
     free = np.ones(body.count, bool)

@@ -20,7 +20,7 @@ def radial_errors(n: int, inner_stretch: float) -> float:
     outer_stretch = np.sqrt(1.0 + (inner_stretch**2 - 1.0) / 4.0)
     load = body.add_pressure(facets)
     load.value = MU * (np.log(inner_stretch / outer_stretch) + (outer_stretch**-2 - inner_stretch**-2) / 2.0)
-    prescribed = body.free()
+    prescribed = body.free_displacements()
     prescribed[(shape.points[:, 2] == 0.0) | (shape.points[:, 2] == height), 2] = 0.0
     for axis in range(2):
         prescribed[np.abs(shape.points[:, axis]) < 1e-9, axis] = 0.0
@@ -45,7 +45,7 @@ def test_torsion_gives_the_moment_and_the_axial_force_of_the_closed_form():
     shape = disc(np.linspace(0.0, 1.0, 5), angle, np.linspace(0.0, height, 5))
     body = solid_body(shape.points, LAW, shape.tets)
     bottom, top = shape.points[:, 2] == 0.0, shape.points[:, 2] == height
-    prescribed = body.free()
+    prescribed = body.free_displacements()
     prescribed[bottom] = 0.0
     for step in np.arange(1, 5) / 4:
         c, s = np.cos(step * twist * height), np.sin(step * twist * height)

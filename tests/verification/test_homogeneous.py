@@ -16,7 +16,7 @@ def nominal_stress(stretch: float, driven: tuple[int, ...], held: tuple[int, ...
     """Reaction per undeformed area on x = 1 with the faces of some axes driven, others held."""
     shape = grid([np.linspace(0.0, 1.0, 4)] * 3, jitter=0.2)
     body = solid_body(shape.points, INCOMPRESSIBLE, shape.tets)
-    prescribed = body.free()
+    prescribed = body.free_displacements()
     for axis in range(3):
         prescribed[shape.points[:, axis] == 0.0, axis] = 0.0
         if axis in driven + held:

@@ -95,7 +95,7 @@ def pressed(mesh):
         shear = YOUNG[name] / (2 * (1 + POISSON_RATIO))
         law = LinearLaw(shear, bulk_modulus(shear, POISSON_RATIO))
         body.add_region(name, law, mesh.tets[mesh.region_tets(name)])
-    prescribed = body.free()
+    prescribed = body.free_displacements()
     prescribed[np.unique(mesh.facets["contact"]), 2] = -DEPTH_MM
     prescribed[np.unique(mesh.facets["base"])] = 0.0
     body.solve(prescribed)

@@ -40,7 +40,7 @@ def distorted():
 
 def surface_held(body: ElasticBody, shape, field):
     """Displacement prescribed on the whole surface, free inside."""
-    prescribed = body.free()
+    prescribed = body.free_displacements()
     outside = np.unique(shape.skin)
     prescribed[outside] = field[outside]
     return prescribed
@@ -66,7 +66,7 @@ def test_an_affine_displacement_of_the_film_under_voltage_is_affine_inside():
     law = FilmLaw(si.stiffness / unit, si.coupling * unit, si.permittivity * unit, si.to_film_axes)
     numbers = np.arange(shape.points.size).reshape(-1, 3)
     body, affine = ElasticBody(shape.points, numbers, numbers.size), shape.points @ STRAIN.T
-    voltage = body.number(1)
+    voltage = body.add_unknowns(1)
     everywhere = np.array([[-np.inf, np.inf, -np.inf, np.inf]])
     body.terms.append(film_region(law, shape.points, shape.tets, numbers, voltage, everywhere, 1.0))
     body.solve(surface_held(body, shape, affine), held={voltage[0]: 0.05}, steps=2)
@@ -81,7 +81,7 @@ def test_a_plate_presses_uniformly_on_a_distorted_block(name):
     body = solid_body(shape.points, law, shape.tets)
     plate = DotShape("plate", 0.0, 0.0, np.zeros((1, 3)), np.array([0.0, 0.0, 1.0]), np.eye(3))
     contact = body.add_contact(shape.facets(lambda x: x[:, 2] == 1.0), RigidDot(plate, 1.0))
-    prescribed = body.free()
+    prescribed = body.free_displacements()
     for axis in range(3):
         prescribed[shape.points[:, axis] == 0.0, axis] = 0.0
     body.solve(prescribed, move=[0.0, 0.0, -0.2], steps=2)

@@ -36,9 +36,9 @@ def stiffness(open_circuit: bool, d31: float) -> float:
     shape = grid([np.linspace(0.0, 1.0, 4)] * 3, jitter=0.2)
     numbers = np.arange(shape.points.size).reshape(-1, 3)
     body = ElasticBody(shape.points, numbers, numbers.size)
-    voltage = body.number(1)
+    voltage = body.add_unknowns(1)
     body.terms.append(film_region(scaled_law(d31), shape.points, shape.tets, numbers, voltage, EVERYWHERE, 1.0))
-    prescribed, strain = body.free(), 1e-6
+    prescribed, strain = body.free_displacements(), 1e-6
     for axis in range(3):
         prescribed[shape.points[:, axis] == 0.0, axis] = 0.0
     end = np.flatnonzero(shape.points[:, 0] == 1.0)
@@ -68,12 +68,12 @@ def test_unimorph_voltage_is_the_curvature_times_the_distance_from_the_neutral_a
     above = shape.centres[:, 2] > 0.0
     shear = soft / STRESS / (2.0 * (1.0 + POISSON))
     body.add_region("substrate", LinearLaw(shear, bulk_modulus(shear, POISSON)), shape.tets[~above])
-    voltage = body.number(1)
+    voltage = body.add_unknowns(1)
     piezo = film_region(scaled_law(D31), shape.points, shape.tets[above], numbers, np.array([-1]), EVERYWHERE, film)
     body.terms.append(piezo)
     stretch = YOUNG * film, soft * substrate
     axis = (stretch[0] * film / 2 - stretch[1] * substrate / 2) / sum(stretch)
-    prescribed = body.free()
+    prescribed = body.free_displacements()
     prescribed[shape.points[:, 0] == 0.0, 0] = 0.0
     end = shape.points[:, 0] == length
     prescribed[end, 0] = curvature * length * (shape.points[end, 2] - axis)

@@ -45,7 +45,7 @@ def test_clamped_beam_with_shear(height, tolerance):
     width, load, small = 0.05, 1.0, 1e-6
     shape = grid((np.linspace(0.0, 0.5, 13), [0.0, width], np.linspace(0.0, height, 5)))
     body = solid_body(shape.points, hooke(0.3), shape.tets)
-    prescribed = body.free()
+    prescribed = body.free_displacements()
     prescribed[shape.points[:, 0] == 0.0] = 0.0
     prescribed[shape.points[:, 0] == 0.5, 0] = 0.0
     middle = shape.facets(lambda x: x[:, 0] == 0.5)

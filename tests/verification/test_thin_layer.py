@@ -5,7 +5,7 @@ import pytest
 
 from geometry.dot import DotShape
 from softdot.verify.body import solid_body
-from softdot.verify.lattice import disc, graded
+from softdot.verify.lattice import disc, graded_coordinates
 from solve.materials.laws import InvariantLaw
 from solve.terms.rigid_dot import RigidDot
 from tests.cases import for_each
@@ -18,13 +18,15 @@ LAW = InvariantLaw(SHEAR / 2.0, 0.0, 0.0, 0.0, 1e4)
 def force(radius: float, depth: float) -> float:
     """Reaction of a layer of height 1 and radius 6."""
     a = np.sqrt(radius * depth)
-    r = np.concatenate([np.linspace(0.0, 1.4 * a, 12), 1.4 * a + graded(0.0, 6.0 - 1.4 * a, 0.12 * a, 1.5)[1:]])
-    shape = disc(r, np.linspace(0.0, np.pi / 2, 4), -graded(0.0, 1.0, 0.1, 0.3)[::-1])
+    r = np.concatenate(
+        [np.linspace(0.0, 1.4 * a, 12), 1.4 * a + graded_coordinates(0.0, 6.0 - 1.4 * a, 0.12 * a, 1.5)[1:]]
+    )
+    shape = disc(r, np.linspace(0.0, np.pi / 2, 4), -graded_coordinates(0.0, 1.0, 0.1, 0.3)[::-1])
     body = solid_body(shape.points, LAW, shape.tets)
     sphere = DotShape("cap", radius, radius, np.zeros((1, 3)), np.zeros(3), np.eye(3))
     facets = shape.facets(lambda x: (x[:, 2] == 0.0) & (np.hypot(x[:, 0], x[:, 1]) < 1.6 * a))
     contact = body.add_contact(facets, RigidDot(sphere, 1.0))
-    prescribed = body.free()
+    prescribed = body.free_displacements()
     for axis in range(2):
         prescribed[np.abs(shape.points[:, axis]) < 1e-9, axis] = 0.0
     prescribed[shape.points[:, 2] == -1.0] = 0.0

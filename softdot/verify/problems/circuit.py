@@ -13,13 +13,13 @@ TIME_S = np.linspace(0.0, 1.0, 4001)
 FREQUENCY_HZ = 20.0
 
 
-def ramp() -> Floats:
+def ramp_of_charge() -> Floats:
     """Charge (t,) that rises evenly over the whole time."""
     return np.asarray(CHARGE_C * TIME_S / TIME_S[-1])
 
 
 def last_voltage(charge_C: Floats, readout: Readout) -> float:
-    """At the end."""
+    """Voltage of the amplifier at the end of the time."""
     return float(amplify(TIME_S, charge_C, FILM_F, readout, Physics())[-1])
 
 
@@ -31,14 +31,14 @@ def gain(readout: Readout) -> float:
     return float(2.0 * abs(np.mean(voltage[last][:-1] * turn)) / (CHARGE_C / FILM_F))
 
 
-def ramp_through(resistance_Ohm: float, capacitance_F: float) -> float:
-    """R Q' (1 - exp(-t / R C)) at the end of the ramp."""
+def ramp_voltage(resistance_Ohm: float, capacitance_F: float) -> float:
+    """Voltage at the end of a ramp of charge into R and C: R Q' (1 - exp(-t / R C))."""
     current = CHARGE_C / TIME_S[-1]
     return float(resistance_Ohm * current * -np.expm1(-TIME_S[-1] / (resistance_Ohm * capacitance_F)))
 
 
-VOLTAGE = Readout(input_resistance_MOhm=1000.0, input_capacitance_pF=150.0)
-CHARGE = Readout(mode="charge", feedback_pF=500.0, feedback_MOhm=1000.0)
+VOLTAGE_AMPLIFIER = Readout(input_resistance_MOhm=1000.0, input_capacitance_pF=150.0)
+CHARGE_AMPLIFIER = Readout(mode="charge", feedback_pF=500.0, feedback_MOhm=1000.0)
 SOURCE = "linear circuits (Horowitz and Hill, The Art of Electronics, 2015, ch. 1); "
 EXACT = "integrated exactly for a charge that is linear between the samples: round-off"
 SAMPLED = "a sine sampled 200 times a period and taken as straight between, (π/200)²/3 = 0.01 % for each stage"
@@ -51,8 +51,8 @@ PROBLEMS = (
         unit="V",
         bound_percent=1e-6,
         basis=EXACT,
-        reference=lambda: ramp_through(1e9, FILM_F + 150e-12),
-        solved=lambda: last_voltage(ramp(), VOLTAGE),
+        reference=lambda: ramp_voltage(1e9, FILM_F + 150e-12),
+        solve=lambda: last_voltage(ramp_of_charge(), VOLTAGE_AMPLIFIER),
     ),
     Problem(
         name="rc-charge",
@@ -61,8 +61,8 @@ PROBLEMS = (
         unit="V",
         bound_percent=1e-6,
         basis=EXACT,
-        reference=lambda: -ramp_through(1e9, 500e-12),
-        solved=lambda: last_voltage(ramp(), CHARGE),
+        reference=lambda: -ramp_voltage(1e9, 500e-12),
+        solve=lambda: last_voltage(ramp_of_charge(), CHARGE_AMPLIFIER),
     ),
     Problem(
         name="rc-low-pass",
@@ -72,7 +72,7 @@ PROBLEMS = (
         bound_percent=0.1,
         basis=SAMPLED,
         reference=lambda: 1.0 / np.sqrt(1.0 + 2.0**6),
-        solved=lambda: gain(Readout(low_pass_Hz=FREQUENCY_HZ / 2.0, filter_order=3)),
+        solve=lambda: gain(Readout(low_pass_Hz=FREQUENCY_HZ / 2.0, filter_order=3)),
     ),
     Problem(
         name="rc-high-pass",
@@ -82,6 +82,6 @@ PROBLEMS = (
         bound_percent=0.1,
         basis=SAMPLED,
         reference=lambda: 1.0 / np.sqrt(1.0 + 2.0**4),
-        solved=lambda: gain(Readout(high_pass_Hz=2.0 * FREQUENCY_HZ, filter_order=2)),
+        solve=lambda: gain(Readout(high_pass_Hz=2.0 * FREQUENCY_HZ, filter_order=2)),
     ),
 )

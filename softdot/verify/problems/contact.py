@@ -5,15 +5,18 @@ import numpy as np
 from foundation.arrays import Floats
 from geometry.dot import DotShape
 from softdot.verify.body import ElasticBody, solid_body
-from softdot.verify.lattice import Grid, disc, graded
+from softdot.verify.lattice import Grid, disc, graded_coordinates
 from softdot.verify.problem import Problem
 from solve.materials.laws import InvariantLaw, bulk_modulus
 from solve.terms.contact import HATS, SHAPES
 from solve.terms.rigid_dot import RigidDot
 
 RADIUS, DEPTH = 40.0, 0.025
-"""Of the sphere and its approach: the radius of contact is 1, and depth over radius 0.0006, where Hertz is a limit."""
+"""Radius of the sphere and its approach: the radius of contact is 1, and depth over radius 0.0006, where Hertz is a
+limit.
+"""
 SIZES = (12.0, 24.0)
+"""Radius and height of the two cylinders, in radii of contact."""
 POISSON = 0.3
 PLANE_MODULUS = 1.0 / (1.0 - POISSON**2)  # E* for E = 1
 SHEAR = 0.5 / (1.0 + POISSON)
@@ -22,15 +25,15 @@ LAW = InvariantLaw(SHEAR / 2.0, 0.0, 0.0, 0.0, bulk_modulus(SHEAR, POISSON))
 
 def cylinder(size: float, inner: Floats, step: float) -> Grid:
     """A quarter of a cylinder below z = 0, as deep as its radius, with elements that grow away from r = 1."""
-    outer = graded(inner[-1], size, inner[-1] - inner[-2], 0.4 * size)
-    depth = -graded(0.0, size, step, 0.4 * size)[::-1]
+    outer = graded_coordinates(inner[-1], size, inner[-1] - inner[-2], 0.4 * size)
+    depth = -graded_coordinates(0.0, size, step, 0.4 * size)[::-1]
     return disc(np.concatenate([inner, outer[1:]]), np.linspace(0.0, np.pi / 2, 4), depth)
 
 
 def body_on_smooth_base(shape: Grid, size: float) -> tuple[ElasticBody, Floats]:
-    """And its prescribed displacements (n, 3): base and planes of symmetry."""
+    """The body, and its prescribed displacements (n, 3) at the base and the planes of symmetry."""
     body = solid_body(shape.points, LAW, shape.tets)
-    prescribed = body.free()
+    prescribed = body.free_displacements()
     prescribed[shape.points[:, 2] == -size, 2] = 0.0
     for axis in range(2):
         prescribed[np.abs(shape.points[:, axis]) < 1e-9, axis] = 0.0
@@ -38,7 +41,9 @@ def body_on_smooth_base(shape: Grid, size: float) -> tuple[ElasticBody, Floats]:
 
 
 def hertz(size: float) -> Floats:
-    """Force, radius of the area in contact, and radius by the second moment of the pressure, a^2 = 5/2 <r^2>."""
+    """Force, radius of the area in contact, and radius by the second moment of the pressure, a^2 = 5/2 <r^2>, for one
+    size.
+    """
     edge = np.linspace(0.955, 1.06, 8)
     inner = np.concatenate([np.linspace(0.0, 0.8, 6), [0.86, 0.9, 0.94], edge, [1.1, 1.16]])
     shape = cylinder(size, inner, 0.1)
@@ -56,8 +61,8 @@ def hertz(size: float) -> Floats:
     return np.array([force, np.sqrt(area / np.pi), np.sqrt(2.5 * moment)])
 
 
-def on_half_space() -> Floats:
-    """As hertz, without the error of the first order in one over the size."""
+def hertz_on_half_space() -> Floats:
+    """The results of hertz, without their error of the first order in one over the size."""
     near, far = hertz(SIZES[0]), hertz(SIZES[1])
     return np.asarray(2.0 * far - near)
 
@@ -71,6 +76,6 @@ PROBLEMS = (
         bound_percent=1.5,
         basis="the half-space is extrapolated from cylinders of 12 and 24 radii of contact: (1/12)² is left, 0.7 %",
         reference=lambda: 4.0 / 3.0 * PLANE_MODULUS * RADIUS**0.5 * DEPTH**1.5,
-        solved=lambda: float(on_half_space()[0]),
+        solve=lambda: float(hertz_on_half_space()[0]),
     ),
 )

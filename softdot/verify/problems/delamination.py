@@ -21,7 +21,9 @@ LOAD = 1e-6
 
 
 def split_beam(crack: float) -> tuple[ElasticBody, UnilateralInterface, Floats]:
-    """Both arms, the patch at z = h and 0 <= x < crack where they are not joined, and displacements (n, 3) to hold."""
+    """Both arms, the patch at z = h and 0 <= x < crack where they are not joined, and prescribed displacements (n,
+    3).
+    """
     z = np.linspace(0.0, 2.0 * DEPTH, 5)
     shape = grid((np.linspace(0.0, LENGTH, 41), [0.0, WIDTH], z))
     points, tets = shape.points, shape.tets.copy()
@@ -33,54 +35,55 @@ def split_beam(crack: float) -> tuple[ElasticBody, UnilateralInterface, Floats]:
     tets[above] = twin[tets[above]]
     body = solid_body(np.vstack([points, points[inside]]), LAW, tets)
     upper = twin[lower]
-    multipliers = body.number(opening_nodes(lower, upper, body.displacement)[1])
+    multipliers = body.add_unknowns(opening_nodes(lower, upper, body.displacement)[1])
     patch = unilateral_interface(body.points, lower, upper, body.displacement, multipliers)
     body.terms.append(patch)
-    prescribed = body.free()
+    prescribed = body.free_displacements()
     prescribed[:, 1] = 0.0
     return body, patch, prescribed
 
 
 def _facets_at(points: Floats, tets: Ints, crack: float) -> Ints:
     """Facets (k, 6) of the lower arm at z = h within the crack, normal up."""
-    from softdot.verify.lattice import FACES
+    from softdot.verify.lattice import FACE_NODES
 
-    facets = tets[:, FACES].reshape(-1, 6)
+    facets = tets[:, FACE_NODES].reshape(-1, 6)
     at = points[facets]
     return facets[((np.abs(at[..., 2] - DEPTH) < 1e-9) & (at[..., 0] < crack + 1e-9)).all(axis=1)]
 
 
-def _line(body: ElasticBody, x: float, z: float) -> Bools:
+def _nodes_on_line(body: ElasticBody, x: float, z: float) -> Bools:
+    """Whether each node lies on the line along y at (x, z)."""
     return np.asarray((np.abs(body.points[:, 0] - x) < 1e-9) & (np.abs(body.points[:, 2] - z) < 1e-9))
 
 
-def opening() -> float:
-    """Of the ends of the arms under forces that part them, over the force per width."""
+def arm_opening() -> float:
+    """Opening of the ends of the arms under forces that part them, over the force per width."""
     body, _, prescribed = split_beam(OPEN_CRACK)
     prescribed[np.abs(body.points[:, 0] - LENGTH) < 1e-9] = 0.0
     load = np.zeros(body.points.shape)
-    ends = _line(body, 0.0, 0.0), _line(body, 0.0, 2.0 * DEPTH)
+    ends = _nodes_on_line(body, 0.0, 0.0), _nodes_on_line(body, 0.0, 2.0 * DEPTH)
     for nodes, sign in zip(ends, (-1.0, 1.0), strict=True):
         load[nodes, 2] = sign * LOAD * WIDTH / nodes.sum()
     body.solve(prescribed, load, tolerance=1e-8)
     return float(body.u[ends[1], 2].mean() - body.u[ends[0], 2].mean()) / LOAD
 
 
-def opening_by_beams() -> float:
-    """8 (a + chi h)^3 / (E' h^3), with the compliance of the root chi (Williams 1989)."""
+def arm_opening_by_beams() -> float:
+    """The opening by beam theory, 8 (a + chi h)^3 / (E' h^3), with the compliance of the root chi (Williams 1989)."""
     q = 1.18 * PLANE / SHEAR
     chi = np.sqrt(PLANE / (11.0 * SHEAR) * (3.0 - 2.0 * (q / (1.0 + q)) ** 2))
     return float(8.0 * (OPEN_CRACK + chi * DEPTH) ** 3 / (PLANE * DEPTH**3))
 
 
-def across() -> float:
+def load_share_across() -> float:
     """Share of the load that the closed patch carries from arm to arm while the beam is bent on three points."""
     body, patch, prescribed = split_beam(CLOSED_CRACK)
     half = LENGTH / 2.0
     for x in (0.0, LENGTH):
-        prescribed[_line(body, x, 0.0), 2] = 0.0
-    prescribed[_line(body, half, DEPTH), 0] = 0.0
-    top = _line(body, half, 2.0 * DEPTH)
+        prescribed[_nodes_on_line(body, x, 0.0), 2] = 0.0
+    prescribed[_nodes_on_line(body, half, DEPTH), 0] = 0.0
+    top = _nodes_on_line(body, half, 2.0 * DEPTH)
     load = np.zeros(body.points.shape)
     load[top, 2] = -LOAD * WIDTH / top.sum()
     body.solve(prescribed, load, tolerance=1e-8)
@@ -95,8 +98,8 @@ PROBLEMS = (
         unit="1",
         bound_percent=5.0,
         basis="beam theory of arms ten times as long as deep, with a fitted root: 3 % in its source",
-        reference=opening_by_beams,
-        solved=opening,
+        reference=arm_opening_by_beams,
+        solve=arm_opening,
     ),
     Problem(
         name="delaminated-closed",
@@ -106,6 +109,6 @@ PROBLEMS = (
         bound_percent=5.0,
         basis="beam theory leaves out the depth over the crack's length, squared: 2 %, and the mesh's support",
         reference=lambda: 0.25,
-        solved=across,
+        solve=load_share_across,
     ),
 )

@@ -13,20 +13,22 @@ from softdot.verify.problem import Problem
 from solve.materials.laws import InvariantLaw, bulk_modulus
 
 DEPTH, SHEAR, POISSON, COEFFICIENT = 0.04, 1.0, 0.45, 0.3
-LEFT = 1.0 - DEPTH
+COMPRESSED_HEIGHT = 1.0 - DEPTH
 """Height of the compressed column."""
 
 
 def shear_force(g: float) -> float:
-    """Along the plate."""
-    return float(SHEAR * LEFT ** (-2.0 / 3.0) * g)
+    """Force per area along the plate at a shear g."""
+    return float(SHEAR * COMPRESSED_HEIGHT ** (-2.0 / 3.0) * g)
 
 
 def normal_force(g: float) -> float:
-    """Across it, of a plate that presses."""
+    """Force per area across the plate, which presses, at a shear g."""
     bulk = 2.0 * SHEAR * (1.0 + POISSON) / (3.0 * (1.0 - 2.0 * POISSON))
-    isochoric = LEFT ** (-5.0 / 3.0) * (2.0 + g**2 + LEFT**2) / 3.0 - LEFT ** (1.0 / 3.0)
-    return float(SHEAR * isochoric + bulk * (1.0 - LEFT))
+    isochoric = COMPRESSED_HEIGHT ** (-5.0 / 3.0) * (2.0 + g**2 + COMPRESSED_HEIGHT**2) / 3.0 - COMPRESSED_HEIGHT ** (
+        1.0 / 3.0
+    )
+    return float(SHEAR * isochoric + bulk * (1.0 - COMPRESSED_HEIGHT))
 
 
 def slip_limit() -> float:
@@ -35,7 +37,9 @@ def slip_limit() -> float:
 
 
 def tangential_force(*shares: float) -> float:
-    """Per area, after the plate was pressed and dragged in turn to these shares of the slip limit."""
+    """Force per area along the plate after it was pressed and then dragged in turn to these shares of the slip
+    limit.
+    """
     block = grid([np.linspace(0.0, 1.0, 3)] * 3)
     law = InvariantLaw(SHEAR / 2.0, 0.0, 0.0, 0.0, bulk_modulus(SHEAR, POISSON))
     column = DraggedBlock(block, law, None, COEFFICIENT, level=True)
@@ -56,7 +60,7 @@ PROBLEMS = (
         bound_percent=1e-4,
         basis=BASIS,
         reference=lambda: shear_force(0.9 * slip_limit()),
-        solved=lambda: tangential_force(0.5, 0.9),
+        solve=lambda: tangential_force(0.5, 0.9),
     ),
     Problem(
         name="slip",
@@ -66,6 +70,6 @@ PROBLEMS = (
         bound_percent=1e-4,
         basis=BASIS,
         reference=lambda: COEFFICIENT * normal_force(slip_limit()),
-        solved=lambda: tangential_force(0.9, 1.5, 3.0),
+        solve=lambda: tangential_force(0.9, 1.5, 3.0),
     ),
 )

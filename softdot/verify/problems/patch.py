@@ -7,16 +7,16 @@ from softdot.verify.lattice import grid
 from softdot.verify.problem import Problem
 from solve.materials.parameters import NeoHookean
 
-STRAIN = np.array([[0.2, 0.1, 0.0], [0.05, -0.1, 0.1], [0.0, -0.1, -0.05]])
+DISPLACEMENT_GRADIENT = np.array([[0.2, 0.1, 0.0], [0.05, -0.1, 0.1], [0.0, -0.1, -0.05]])
 """Displacement gradient."""
 RUBBER = NeoHookean(youngs_modulus_MPa=3.0, poisson_ratio=0.4999)
 
 
 def pressure_over_exact() -> float:
-    """Nodal pressure over K (det F - 1), at the node where it is farthest off; inner nodes are free to move."""
+    """Nodal pressure over the exact one at the node where it is farthest off; inner nodes are free to move."""
     shape = grid([np.linspace(0.0, 1.0, 4)] * 3, jitter=0.2)
-    body, affine = solid_body(shape.points, RUBBER.law, shape.tets), shape.points @ STRAIN.T
-    prescribed, outside = body.free(), np.unique(shape.skin)
+    body, affine = solid_body(shape.points, RUBBER.law, shape.tets), shape.points @ DISPLACEMENT_GRADIENT.T
+    prescribed, outside = body.free_displacements(), np.unique(shape.skin)
     prescribed[outside] = affine[outside]
     body.solve(prescribed, steps=2)
     ratio = body.x[body.pressure[0]].ravel() / _pressure()
@@ -25,9 +25,9 @@ def pressure_over_exact() -> float:
 
 
 def _pressure() -> float:
-    """K (det F - 1) with K = E / (3 (1 - 2 nu))."""
+    """The exact pressure, K (det F - 1) with K = E / (3 (1 - 2 nu)), MPa."""
     bulk = RUBBER.youngs_modulus_MPa / (3.0 * (1.0 - 2.0 * RUBBER.poisson_ratio))
-    return float(bulk * (np.linalg.det(np.eye(3) + STRAIN) - 1.0))
+    return float(bulk * (np.linalg.det(np.eye(3) + DISPLACEMENT_GRADIENT) - 1.0))
 
 
 PROBLEMS = (
@@ -39,6 +39,6 @@ PROBLEMS = (
         bound_percent=1e-5,
         basis="the exact field lies in the finite-element space: round-off over 1 - 2ν",
         reference=lambda: 1.0,
-        solved=pressure_over_exact,
+        solve=pressure_over_exact,
     ),
 )

@@ -46,8 +46,8 @@ def relaxed_share() -> float:
     return float(trace.reaction_force_N[-1] / trace.reaction_force_N[peak])
 
 
-def _pair(tables: dict[str, Any]) -> ArrayCase:
-    """Two islands: nothing but the rigid base is common."""
+def _two_islands(tables: dict[str, Any]) -> ArrayCase:
+    """Two segments as islands, with nothing but the rigid base in common."""
     stated = {
         "segment": {"length_mm": 2.3, "width_mm": 2.3, "boundary": "free"},
         "array": {"columns": 2, "rows": 1, "shared": [], "pitch_mm": 2.5},
@@ -60,7 +60,7 @@ def _pair(tables: dict[str, Any]) -> ArrayCase:
 
 @cache
 def force_alone() -> float:
-    """Of one segment of that size, by the mesher and pipeline of a lone one, N."""
+    """Force, N, of one segment of that size, by the mesher and pipeline of a lone one."""
     case = Case(
         segment={"length_mm": 2.3, "width_mm": 2.3, "boundary": "free"},
         press={"indentation_mm": 0.2, "load_steps": 2},
@@ -70,8 +70,8 @@ def force_alone() -> float:
 
 
 def force_of_two() -> float:
-    """Of a cell of two dots on two segments that share nothing, N."""
-    pair = _pair({"dot": {"cell": "⠉", "standard": "marburg-medium"}})
+    """Force, N, of a cell of two dots on two segments that share nothing."""
+    pair = _two_islands({"dot": {"cell": "⠉", "standard": "marburg-medium"}})
     return float(pair.press_by_cell().solve().trace.reaction_force_N[-1])
 
 
@@ -84,7 +84,7 @@ PROBLEMS = (
         bound_percent=0.01,
         basis="exact for a strain that stays; the rise takes 5e-6 of the relaxation time",
         reference=lambda: 1.0 - SHARE * -float(np.expm1(-HOLD_S / TIME_S)),
-        solved=relaxed_share,
+        solve=relaxed_share,
     ),
     Problem(
         name="array-of-two",
@@ -94,6 +94,6 @@ PROBLEMS = (
         bound_percent=1.0,
         basis="two meshers, whose meshes may each be 0.5 % from the limit at this size",
         reference=lambda: 2.0 * force_alone(),
-        solved=force_of_two,
+        solve=force_of_two,
     ),
 )

@@ -23,10 +23,10 @@ DERIVATIVE_STEP = 1e-30  # of a complex argument: no difference is taken, so no 
 
 
 def nominal_stress(law: MediumLaw) -> float:
-    """Force per undeformed area of a distorted block of unit size pulled along x."""
+    """Force per undeformed area of a distorted block of unit size that is pulled along x."""
     shape = grid([np.linspace(0.0, 1.0, 3)] * 3, jitter=0.2)
     body = solid_body(shape.points, law, shape.tets)
-    prescribed = body.free()
+    prescribed = body.free_displacements()
     for axis in range(3):
         prescribed[shape.points[:, axis] == 0.0, axis] = 0.0
     end = shape.points[:, 0] == 1.0
@@ -36,7 +36,7 @@ def nominal_stress(law: MediumLaw) -> float:
 
 
 def exact_stress(energy: Energy) -> float:
-    """dW / d lambda where the two lateral stretches carry nothing."""
+    """Nominal stress dW / d lambda where the two lateral stretches carry no stress."""
 
     def lateral(across: float) -> float:
         return energy(STRETCH, across + DERIVATIVE_STEP * 1j).imag / DERIVATIVE_STEP
@@ -46,7 +46,7 @@ def exact_stress(energy: Energy) -> float:
 
 
 def nearly_incompressible(isochoric: Energy, shear: float) -> Energy:
-    """W(l / J^(1/3)) + K/2 (J - 1)^2, K = 2 G (1 + nu) / (3 (1 - 2 nu))."""
+    """The energy W(l / J^(1/3)) + K/2 (J - 1)^2, with K = 2 G (1 + nu) / (3 (1 - 2 nu))."""
     bulk = 2.0 * shear * (1.0 + POISSON) / (3.0 * (1.0 - 2.0 * POISSON))
 
     def energy(along: complex, across: complex) -> complex:
@@ -56,25 +56,25 @@ def nearly_incompressible(isochoric: Energy, shear: float) -> Energy:
     return energy
 
 
-def _first(along: complex, across: complex) -> complex:
-    """I1 - 3."""
+def _first_invariant(along: complex, across: complex) -> complex:
+    """The first invariant less its value at rest, I1 - 3."""
     return along**2 + 2.0 * across**2 - 3.0
 
 
 def _mooney_rivlin(along: complex, across: complex) -> complex:
-    return 0.3 * _first(along, across) + 0.1 * (along**-2 + 2.0 * across**-2 - 3.0)
+    return 0.3 * _first_invariant(along, across) + 0.1 * (along**-2 + 2.0 * across**-2 - 3.0)
 
 
 def _yeoh(along: complex, across: complex) -> complex:
-    return sum(c * _first(along, across) ** power for power, c in ((1, 0.3), (2, 0.02), (3, 0.001)))
+    return sum(c * _first_invariant(along, across) ** power for power, c in ((1, 0.3), (2, 0.02), (3, 0.001)))
 
 
 def _knowles(along: complex, across: complex) -> complex:
-    return 0.3 / 0.5 * ((1.0 + 0.5 / 2.5 * _first(along, across)) ** 2.5 - 1.0)
+    return 0.3 / 0.5 * ((1.0 + 0.5 / 2.5 * _first_invariant(along, across)) ** 2.5 - 1.0)
 
 
 def _fung(along: complex, across: complex) -> complex:
-    return complex(0.3 / 0.1 * (np.exp(0.1 * _first(along, across)) - 1.0))
+    return complex(0.3 / 0.1 * (np.exp(0.1 * _first_invariant(along, across)) - 1.0))
 
 
 def _ogden(along: complex, across: complex) -> complex:
@@ -90,7 +90,7 @@ def _hyperfoam(along: complex, across: complex) -> complex:
 
 
 def _linear(along: complex, across: complex) -> complex:
-    """G dev E : dev E + K/2 (J - 1)^2: the strain of the shear is not made isochoric."""
+    """The energy G dev E : dev E + K/2 (J - 1)^2: the strain of the shear is not made isochoric."""
     one, two = 0.5 * (along**2 - 1.0), 0.5 * (across**2 - 1.0)
     shear = 1.0 / (2.0 * (1.0 + POISSON))
     bulk = 1.0 / (3.0 * (1.0 - 2.0 * POISSON))
@@ -101,7 +101,7 @@ NEO_HOOKEAN_SHEAR = 1.0 / (2.0 * (1.0 + POISSON))
 LAWS = {
     "neo-hookean": (
         NeoHookean(youngs_modulus_MPa=1.0, poisson_ratio=POISSON),
-        nearly_incompressible(lambda a, b: NEO_HOOKEAN_SHEAR / 2.0 * _first(a, b), NEO_HOOKEAN_SHEAR),
+        nearly_incompressible(lambda a, b: NEO_HOOKEAN_SHEAR / 2.0 * _first_invariant(a, b), NEO_HOOKEAN_SHEAR),
         "Treloar, The Physics of Rubber Elasticity, 1975, ch. 4",
     ),
     "mooney-rivlin": (
@@ -150,7 +150,7 @@ PROBLEMS = tuple(
         bound_percent=1e-5,
         basis="a homogeneous state lies in the finite-element space: round-off and the tolerance of the equilibrium",
         reference=partial(exact_stress, energy),
-        solved=lambda material=material: nominal_stress(material.law),
+        solve=lambda material=material: nominal_stress(material.law),
     )
     for name, (material, energy, source) in LAWS.items()
 )
