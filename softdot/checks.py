@@ -1,7 +1,7 @@
-"""What is refused before any work, what a run will cost, and what a user should know about a design or a result.
+"""Checks before any work, the expected cost of a run, and warnings about a design or a result.
 
-Measured on two cores of an EPYC without other work (docs/speed.md): 0.29 s a Newton iteration at 14,800 unknowns,
-2.9 s at 68,400, about seven iterations a load step where the path does not ask for more.
+Measured on two cores of an EPYC without other work (docs/speed.md): 0.29 s a Newton iteration at 14,800 unknowns, 2.9 s
+at 68,400, about seven iterations a load step where the path does not ask for more.
 """
 
 from dataclasses import dataclass
@@ -47,38 +47,42 @@ from solve.terms.rigid_dot import RigidDot
 from solve.validity import doubts
 from solve.waveform import Waveform
 
-TOO_MANY = 1_000_000
-POINTS = 100_000
-FILL = 6.0 * np.sqrt(2.0)
-"""A regular tetrahedron of edge h has the volume h^3 / (6 sqrt 2)."""
-PRISMS = 12.0 / np.sqrt(3.0)
+MOST_ELEMENTS = 1_000_000
+SIZE_SAMPLES = 100_000
+"""Random points of the stack at which the element size is looked up."""
+TETRAHEDRA_PER_CUBE = 6.0 * np.sqrt(2.0)
+"""Tetrahedra of edge h in a volume h^3: a regular one has the volume h^3 / (6 sqrt 2)."""
+TETRAHEDRA_PER_SQUARE = 12.0 / np.sqrt(3.0)
+"""Tetrahedra of a slice on an area h^2: three for each triangle of area sqrt 3 / 4 h^2."""
 
 
 def refuse_huge_mesh(
     segment: Segment, dot_shape: DotShape, options: MeshOptions, planes: Planes = (), layout: ArrayLayout | None = None
 ) -> None:
-    """InputError when the wished edge lengths mean more than a million elements, or more than fit into memory.
+    """InputError when the wished edge lengths mean more than MOST_ELEMENTS elements, or more than fit into memory.
 
     planes : mirror planes at which the mesh ends. layout : of an array. Of mesh.file the elements are counted;
     InputError too when it is no mesh of the segment.
     """
     count = expected_tetrahedra(segment, dot_shape, options, planes, layout)
     if options.file is not None:
-        if count > TOO_MANY:
-            raise InputError(f"mesh.file = '{options.file}': has {count:.0f} elements, at most {TOO_MANY} are allowed")
+        if count > MOST_ELEMENTS:
+            raise InputError(
+                f"mesh.file = '{options.file}': has {count:.0f} elements, at most {MOST_ELEMENTS} are allowed"
+            )
         refuse_too_little_memory(count, segment.section == "plane-strain", "file", options.file)
         return
     refuse_many_elements(count, options, segment.section == "plane-strain")
 
 
 def refuse_many_elements(count: float, options: MeshOptions, is_slice: bool) -> None:
-    """InputError, which names the smallest size, when so many elements are not allowed or do not fit into memory."""
+    """InputError, naming the smallest size, when count elements are not allowed or do not fit into memory."""
     sizes = options.sizes_mm
     name = min(sizes, key=lambda one: sizes[one])
-    if count > TOO_MANY:
+    if count > MOST_ELEMENTS:
         raise InputError(
             f"mesh.{name} = {sizes[name]:g}: means about {count:.1g} elements, "
-            f"at most {TOO_MANY:.0g} are allowed; use a larger size"
+            f"at most {MOST_ELEMENTS:.0g} are allowed; use a larger size"
         )
     refuse_too_little_memory(count, is_slice, name, sizes[name])
 
@@ -88,7 +92,8 @@ def expected_tetrahedra(
 ) -> float:
     """Rough number of elements of the soft layers: the mean of 6 sqrt 2 / h^3 over points in the stack.
 
-    A slice is one layer of triangles of area sqrt 3 / 4 h^2, each of three tetrahedra. Of mesh.file their number.
+    A slice is one layer of triangles of area sqrt 3 / 4 h^2, each of three tetrahedra. Of mesh.file their number is
+    counted. layout : of an array, whose mesher gives the number.
     """
     if layout is not None:
         return expected_elements(layout, dot_shape, options, planes)
@@ -100,22 +105,22 @@ def expected_tetrahedra(
     high = np.array([shape.half_x, shape.half_y, shape.top])
     low = np.array([-shape.half_x, -shape.half_y, 0.0])
     low[list(planes)] = 0.0
-    points = np.random.default_rng(0).uniform(low, high, (POINTS, 3))
+    points = np.random.default_rng(0).uniform(low, high, (SIZE_SAMPLES, 3))
     if sliced:
-        return float((high - low)[0] * (high - low)[2] * np.mean(PRISMS / field.at(points) ** 2))
-    return float(np.prod(high - low) * np.mean(FILL / field.at(points) ** 3))
+        return float((high - low)[0] * (high - low)[2] * np.mean(TETRAHEDRA_PER_SQUARE / field.at(points) ** 2))
+    return float(np.prod(high - low) * np.mean(TETRAHEDRA_PER_CUBE / field.at(points) ** 3))
 
 
 UNKNOWNS_PER_TETRAHEDRON = {"solid": 4.4, "plane-strain": 1.6}
-ITERATIONS = 5
-ITERATION_S, AT_UNKNOWNS, EXPONENT = 1.5, 68_400, 1.5
+ITERATIONS_PER_STEP = 5
+ITERATION_REFERENCE_S, REFERENCE_UNKNOWNS, TIME_EXPONENT = 1.5, 68_400, 1.5
 SOLIDS_AND_PICTURES_S, MESH_S_PER_TETRAHEDRON = 9.0, 3e-4
 COMPILE_S = 15.0
 
 
 @dataclass(frozen=True)
 class Cost:
-    """Expected size of a run; first_run_s : more on a machine that has not compiled the element kernels yet."""
+    """Expected size of a run. first_run_s : additional time where the element kernels are not compiled yet."""
 
     tetrahedra: int
     unknowns: int
@@ -125,38 +130,43 @@ class Cost:
 
 
 def cost_of(tetrahedra: float, config: Config, presses: int = 1) -> Cost:
-    """Cost of some presses on meshes of so many elements, and of what is made around them.
+    """Expected cost of a number of presses, each on a mesh of that many tetrahedra, with all files of a run.
 
     Waveforms that are followed in time, slides and mechanisms may take several times as long.
     """
     unknowns = UNKNOWNS_PER_TETRAHEDRON[config.segment.section] * tetrahedra
-    solve_s = ITERATIONS * config.press.load_steps * ITERATION_S * (unknowns / AT_UNKNOWNS) ** EXPONENT
+    solve_s = (
+        ITERATIONS_PER_STEP
+        * config.press.load_steps
+        * ITERATION_REFERENCE_S
+        * (unknowns / REFERENCE_UNKNOWNS) ** TIME_EXPONENT
+    )
     time_s = SOLIDS_AND_PICTURES_S + presses * (MESH_S_PER_TETRAHEDRON * tetrahedra + solve_s)
     return Cost(
-        tetrahedra=_rounded(tetrahedra),
-        unknowns=_rounded(unknowns),
-        time_s=float(_rounded(time_s)),
+        tetrahedra=_two_digits(tetrahedra),
+        unknowns=_two_digits(unknowns),
+        time_s=float(_two_digits(time_s)),
         first_run_s=COMPILE_S,
         memory_GB=round(needed_GB(tetrahedra, config.segment.section == "plane-strain"), 1),
     )
 
 
-def _rounded(value: float) -> int:
-    """Two digits: more would claim too much."""
+def _two_digits(value: float) -> int:
+    """A number rounded to two digits: more would claim too much."""
     return int(float(f"{value:.2g}"))
 
 
-NEARLY_INCOMPRESSIBLE = 0.49
+NEARLY_INCOMPRESSIBLE_POISSON_RATIO = 0.49
 
 
 def result_warnings(model: Model, dot_shape: DotShape, result: PressResult) -> list[str]:
-    """Warnings that a solution gives: the solver's own, yield of the film where it is no part of it, strain beyond the
+    """Warnings from a solution: those of the solver, yield of the film where it is not modelled, strain beyond the
     data.
     """
     yields = bool(laws_of(model.physics.inelastic, Yield))
-    warnings = [*result.warnings, *([] if yields else _yield(model, result)), *doubts(model, result)]
+    warnings = [*result.warnings, *([] if yields else _yield_warnings(model, result)), *doubts(model, result)]
     for layer, material in model.materials.items():
-        warnings += _beyond_fit(layer, material, result)
+        warnings += _fit_range_warnings(layer, material, result)
     if model.press.indentation_mm is None:
         deepest_mm = 1e3 * max(step.indentation_m for step in result.steps)
         warnings += press_warnings(dot_shape, model.segment, deepest_mm, model.press.path_xy_mm)
@@ -164,11 +174,11 @@ def result_warnings(model: Model, dot_shape: DotShape, result: PressResult) -> l
 
 
 READOUT_ERROR_PERCENT = 5.0
-"""From which a run warns; what it is stands in the summary whatever it is."""
+"""Error of the read-out from which a run warns; the summary states it in any case."""
 
 
 def course_warnings(model: Model, result: PressResult, along: PressCourse) -> list[str]:
-    """A warning where too few states were solved to tell what an amplifier gives."""
+    """A warning where too few states were solved to know the voltage of an amplifier."""
     error = along.readout_error_percent
     if along.together_V is None or error <= READOUT_ERROR_PERCENT or not result.converged:
         return []
@@ -180,11 +190,11 @@ def course_warnings(model: Model, result: PressResult, along: PressCourse) -> li
 
 
 def design_warnings(model: Model) -> list[str]:
-    """Warnings that need no solution: what is stated and not used, and a cavity that held sides close."""
-    return [*_replaced_bonds(model), *_closed_cavity(model)]
+    """Warnings that need no solution: of stated values that are not used, and of a cavity that held sides close."""
+    return [*_unused_bond_warnings(model), *_cavity_warnings(model)]
 
 
-def _replaced_bonds(model: Model) -> list[str]:
+def _unused_bond_warnings(model: Model) -> list[str]:
     used = model.physics.bonds
     replaced = [name for name, stated in declared_bonds(model.segment).items() if used[name] != stated]
     return [
@@ -193,12 +203,12 @@ def _replaced_bonds(model: Model) -> list[str]:
     ]
 
 
-def _closed_cavity(model: Model) -> list[str]:
+def _cavity_warnings(model: Model) -> list[str]:
     segment = model.segment
     material = model.materials["medium2"]
     held = segment.boundary == "clamped" and "medium2" in segment.held_layers
     nu = getattr(material, "poisson_ratio", 0.0)
-    if not held or isinstance(nu, tuple) or nu < NEARLY_INCOMPRESSIBLE:
+    if not held or isinstance(nu, tuple) or nu < NEARLY_INCOMPRESSIBLE_POISSON_RATIO:
         return []
     return [
         f"the held sides of medium2 enclose a nearly incompressible material (poisson_ratio "
@@ -206,7 +216,7 @@ def _closed_cavity(model: Model) -> list[str]:
     ]
 
 
-def _yield(model: Model, result: PressResult) -> list[str]:
+def _yield_warnings(model: Model, result: PressResult) -> list[str]:
     film = model.materials["film"]
     peak = result.film_peak
     stress = 1e-6 * max(peak.stress_Pa, peak.compression_Pa)
@@ -221,8 +231,8 @@ def _yield(model: Model, result: PressResult) -> list[str]:
     ]
 
 
-def _beyond_fit(layer: str, material: Material, result: PressResult) -> list[str]:
-    """Largest principal stretch of the layer over all steps against the range of the data."""
+def _fit_range_warnings(layer: str, material: Material, result: PressResult) -> list[str]:
+    """A warning where the largest principal stretch of a layer, over all steps, is beyond the range of its data."""
     limit, tet_mesh = material.max_fitted_strain, result.tet_mesh
     if limit is None or layer not in tet_mesh.region_names:
         return []
@@ -236,8 +246,8 @@ def _beyond_fit(layer: str, material: Material, result: PressResult) -> list[str
     ]
 
 
-SAMPLES = 201
-"""Points along each edge of the rim."""
+RIM_SAMPLES = 201
+"""Points along each edge of the held rim."""
 
 
 def refuse_held_rim(segment: Segment, dot_shape: DotShape, indentation_mm: float) -> None:
@@ -252,11 +262,11 @@ def refuse_held_rim(segment: Segment, dot_shape: DotShape, indentation_mm: float
 
 
 def travel_to_rim_mm(segment: Segment, dot_shape: DotShape, indentation_mm: float) -> float:
-    """Indentation at which the dot touches the held rim of the top face, infinite where it stays clear of it."""
+    """Indentation, mm, at which the dot touches the held rim of the top face; infinite where it stays clear of it."""
     stack = layers(segment)
     if segment.boundary != "clamped" or stack[-1].name not in segment.held_layers or not covers_footprint(segment):
         return np.inf
-    rim, dot = _rim(segment, stack[-1].top_mm), RigidDot(dot_shape, 1.0)
+    rim, dot = _rim_points(segment, stack[-1].top_mm), RigidDot(dot_shape, 1.0)
 
     def clear(travel_mm: float) -> bool:
         return bool(dot.distance(rim, np.array([0.0, 0.0, -travel_mm]))[0].min() > 0.0)
@@ -270,15 +280,15 @@ def travel_to_rim_mm(segment: Segment, dot_shape: DotShape, indentation_mm: floa
     return low
 
 
-def _rim(segment: Segment, top_mm: float) -> Floats:
+def _rim_points(segment: Segment, top_mm: float) -> Floats:
     """Points (n, 3) on the outline of the top face; of a slice its two ends."""
     x, y = segment.length_mm / 2.0, segment.width_mm / 2.0
     if segment.section == "plane-strain":
         return np.array([[-x, 0.0, top_mm], [x, 0.0, top_mm]])
-    share = np.linspace(-1.0, 1.0, SAMPLES)
-    sides = [np.column_stack([sign * x * np.ones(SAMPLES), y * share]) for sign in (-1.0, 1.0)]
-    sides += [np.column_stack([x * share, sign * y * np.ones(SAMPLES)]) for sign in (-1.0, 1.0)]
-    return np.column_stack([np.concatenate(sides), np.full(4 * SAMPLES, top_mm)])
+    share = np.linspace(-1.0, 1.0, RIM_SAMPLES)
+    sides = [np.column_stack([sign * x * np.ones(RIM_SAMPLES), y * share]) for sign in (-1.0, 1.0)]
+    sides += [np.column_stack([x * share, sign * y * np.ones(RIM_SAMPLES)]) for sign in (-1.0, 1.0)]
+    return np.column_stack([np.concatenate(sides), np.full(4 * RIM_SAMPLES, top_mm)])
 
 
 def _shallow_waveform(waveform: Waveform | None) -> list[str]:
@@ -295,7 +305,7 @@ def _shallow_waveform(waveform: Waveform | None) -> list[str]:
 
 
 def check_case(model: Model, options: MeshOptions, layout: ArrayLayout | None = None) -> tuple[DotShape, list[str]]:
-    """The dot at rest and what a user should know about this design; layout : of an array. InputError."""
+    """The dot at rest and warnings about the design. layout : of an array. InputError."""
     check_cache_folder()
     segment, press = model.segment, model.press
     if press.waveform is not None:

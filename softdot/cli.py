@@ -15,86 +15,87 @@ from foundation.errors import InputError
 from softdot.command_line.parser import parser
 from softdot.console import BAD_INPUT, GOOD, INTERRUPTED, complain
 from softdot.log import lines_on_stderr
-from softdot.no_room import without_room
+from softdot.no_room import no_room_sentence
 
-STOPPED = "interrupted, nothing was written"
-UNINTERRUPTED = "<frozen importlib", "llvmlite"  # in the file names of their code
-ASKED_AGAIN_S = 0.05
+INTERRUPTED_SENTENCE = "interrupted, nothing was written"
+UNINTERRUPTIBLE_FILES = "<frozen importlib", "llvmlite"  # in the file names of their code
+RETRY_INTERRUPT_S = 0.05
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit status."""
     _write_utf8()
     chosen = parser().parse_args(arguments)
-    asked = _Interrupt()
+    interrupt = _Interrupt()
     with suppress(ValueError):  # outside the main thread
-        signal.signal(signal.SIGTERM, asked)
+        signal.signal(signal.SIGTERM, interrupt)
         if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:  # a shell's background job does not hear Ctrl-C
-            signal.signal(signal.SIGINT, asked)
+            signal.signal(signal.SIGINT, interrupt)
     try:
         _refuse_unprintable(chosen)
-        status = _command(chosen)
+        status = _run_command(chosen)
         sys.stdout.flush()
     except InputError as error:
-        return _say(str(error), BAD_INPUT)
+        return _status_after_complaint(str(error), BAD_INPUT)
     except KeyboardInterrupt:
-        return _say(STOPPED, INTERRUPTED)
+        return _status_after_complaint(INTERRUPTED_SENTENCE, INTERRUPTED)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return GOOD
     except Exception as error:
-        if asked.told:  # what was interrupted turned it into an error of its own, as an import of a library does
-            return _say(STOPPED, INTERRUPTED)
-        said = without_room(error)
+        if interrupt.received:  # an import of a library, say, turns it into an error of its own
+            return _status_after_complaint(INTERRUPTED_SENTENCE, INTERRUPTED)
+        said = no_room_sentence(error)
         if said is None:
             raise
-        return _say(*said)
+        return _status_after_complaint(*said)
     return status
 
 
 class _Interrupt:
-    """What Ctrl-C and SIGTERM do: KeyboardInterrupt, which some compiled libraries turn into another error.
+    """The handler of Ctrl-C and SIGTERM: raises KeyboardInterrupt, which some compiled libraries turn into another
+    error.
 
     It waits for the end of an import and of a compilation: VTK, whose libraries import each other, crashes where one of
     them fails to, and LLVM prints and forgets what is raised in its callbacks.
     """
 
     def __init__(self) -> None:
-        self.told = False
+        self.received = False
 
     def __call__(self, signum: int, frame: FrameType | None) -> None:
-        self.told = True
-        if not _under_way(frame):
+        self.received = True
+        if not _in_uninterruptible_code(frame):
             raise KeyboardInterrupt
-        later = Timer(ASKED_AGAIN_S, os.kill, (os.getpid(), signum))
+        later = Timer(RETRY_INTERRUPT_S, os.kill, (os.getpid(), signum))
         later.daemon = True
         later.start()
 
 
-def _under_way(frame: FrameType | None) -> bool:
-    """Whether a frame was called by one of those that are not to be interrupted."""
+def _in_uninterruptible_code(frame: FrameType | None) -> bool:
+    """Whether a frame was called by code that must not be interrupted."""
     while frame is not None:
-        if any(name in frame.f_code.co_filename for name in UNINTERRUPTED):
+        if any(name in frame.f_code.co_filename for name in UNINTERRUPTIBLE_FILES):
             return True
         frame = frame.f_back
     return False
 
 
 def _write_utf8() -> None:
-    """Units and configurations are written in UTF-8 in every locale: TOML knows no other encoding."""
+    """Write standard output and error in UTF-8 in every locale: units need it, and TOML knows no other encoding."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(encoding="utf-8")
 
 
 def _refuse_unprintable(chosen: argparse.Namespace) -> None:
-    """InputError for text that no file name and no report can hold: a NUL, or a byte that is not UTF-8."""
+    """InputError for an argument that no file name and no report can hold: with a NUL, or a byte that is not UTF-8."""
     for name, value in vars(chosen).items():
         if isinstance(value, str) and ("\0" in value or value.encode(errors="ignore").decode() != value):
             raise InputError(f"{name} = {value[:60]!a}: must be text in UTF-8 without NUL characters")
 
 
-def _command(chosen: argparse.Namespace) -> int:
+def _run_command(chosen: argparse.Namespace) -> int:
     if chosen.command == "schema":
         from softdot.config.schema import config_schema
         from softdot.json_files import json_text
@@ -107,7 +108,7 @@ def _command(chosen: argparse.Namespace) -> int:
     return status
 
 
-def _say(text: str, status: int) -> int:
+def _status_after_complaint(text: str, status: int) -> int:
     complain(text)
     return status
 

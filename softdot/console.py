@@ -1,4 +1,4 @@
-"""What commands print: summaries, complaints in one sentence, and nothing else on standard output."""
+"""The output of commands: summaries, complaints in one sentence, and nothing else on standard output."""
 
 import os
 import sys
@@ -10,12 +10,14 @@ from typing import Any
 from softdot.json_files import json_text
 from softdot.log import warn
 
-LONGEST = 2000  # characters of a sentence; a path may have some
+LONGEST_SENTENCE = 2000  # characters of a sentence; a path may have some
 GOOD, BAD_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 2, 3, 130
 
 
 def show(summary: dict[str, Any], chosen: Namespace, short_text: Callable[[dict[str, Any], str], str]) -> None:
-    """The summary as JSON when asked for, else in short, in a pipe too; its warnings always on standard error."""
+    """Print a summary, as JSON when asked for, else in short, in a pipe too; its warnings always go to standard
+    error.
+    """
     warn(summary.get("warnings", []))
     if chosen.json:
         sys.stdout.write(json_text(summary))
@@ -24,9 +26,9 @@ def show(summary: dict[str, Any], chosen: Namespace, short_text: Callable[[dict[
 
 
 def complain(text: str) -> None:
-    """One sentence on standard error, of a bounded length whatever the text that it quotes."""
+    """Print one sentence on standard error, of a bounded length whatever the text that it quotes."""
     line = " ".join(text.split())
-    print("softdot:", line if len(line) <= LONGEST else f"{line[: LONGEST - 3]}...", file=sys.stderr)
+    print("softdot:", line if len(line) <= LONGEST_SENTENCE else f"{line[: LONGEST_SENTENCE - 3]}...", file=sys.stderr)
 
 
 @contextmanager

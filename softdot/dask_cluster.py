@@ -1,4 +1,4 @@
-"""A Dask cluster that runs already as an executor: its scheduler is asked, its workers must have this softdot."""
+"""A Dask cluster that already runs, as an executor: its scheduler is asked, its workers must have this softdot."""
 
 import asyncio
 import re
@@ -13,7 +13,7 @@ from foundation.executor import LostError
 from foundation.source_hash import source_hash
 from softdot.warm_up import warm_up
 
-SILENT = 60  # above every level of Python's logging
+SILENT_LOG_LEVEL = 60  # above every level of Python's logging
 
 
 class AwayError(InputError):
@@ -24,27 +24,30 @@ class AwayError(InputError):
 
 
 class Cluster:
-    """The workers of a Dask cluster as an executor; a call whose worker dies is done by another one."""
+    """The workers of a Dask cluster as an executor; a call whose worker dies is repeated by another one."""
 
     def __init__(self, client: Any) -> None:
         self._client = client
 
     @property
     def places(self) -> int:
-        """Threads of all workers; one at least while they are being replaced. AwayError."""
-        threads: dict[str, int] = _reached(self._client.nthreads)
+        """Number of threads of all workers, at least one while they are being replaced. AwayError."""
+        threads: dict[str, int] = _call_scheduler(self._client.nthreads)
         return max(1, sum(threads.values()))
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any) -> "Future[Any]":
-        """See foundation.executor.Executor. AwayError, also as what the call has raised."""
+        """Call a function on a worker, as foundation.executor.Executor.submit. AwayError, raised here or by the
+        future.
+        """
         future: Future[Any] = Future()
         future.set_running_or_notify_cancel()
-        asked = _reached(self._client.submit, function, *arguments, pure=False)
-        asked.add_done_callback(partial(_hand_on, future))
+        asked = _call_scheduler(self._client.submit, function, *arguments, pure=False)
+        asked.add_done_callback(partial(_copy_result, future))
         return future
 
 
-def _reached(ask: Callable[..., Any], *arguments: Any, **options: Any) -> Any:
+def _call_scheduler(ask: Callable[..., Any], *arguments: Any, **options: Any) -> Any:
+    """The result of a call of the client. AwayError where the scheduler does not answer."""
     from distributed.client import ClosedClientError
 
     try:
@@ -53,8 +56,8 @@ def _reached(ask: Callable[..., Any], *arguments: Any, **options: Any) -> Any:
         raise AwayError from None
 
 
-def _hand_on(future: "Future[Any]", asked: Any) -> None:
-    """From a future of Dask to one of Python."""
+def _copy_result(future: "Future[Any]", asked: Any) -> None:
+    """Copy result or error of a future of Dask into one of Python."""
     from distributed import KilledWorker
 
     if asked.status == "cancelled":
@@ -83,7 +86,7 @@ def existing_cluster(address: str) -> Iterator[Cluster]:
         raise InputError(f"{where}: must be tcp://HOST:PORT or tls://HOST:PORT, such as tcp://127.0.0.1:8786")
     _require_scheduler(address, where)
     with (
-        silence_logging_cmgr(SILENT),
+        silence_logging_cmgr(SILENT_LOG_LEVEL),
         Client(address, timeout=CONNECT_S, set_as_default=False) as client,  # type: ignore[no-untyped-call]
     ):
         _require_fitting_workers(client, where)
@@ -93,9 +96,9 @@ def existing_cluster(address: str) -> Iterator[Cluster]:
 
 
 def _require_scheduler(address: str, where: str) -> None:
-    """Something at the address answers as a Dask scheduler does; Dask's own client waits for ever on a mute one."""
+    """InputError unless a Dask scheduler answers at an address; Dask's own client waits for ever on a silent server."""
     try:
-        kind = asyncio.run(asyncio.wait_for(_kind(address), CONNECT_S))
+        kind = asyncio.run(asyncio.wait_for(_server_kind(address), CONNECT_S))
     except Exception as error:  # a foreign server can answer anything
         reason = "" if isinstance(error, OSError) else f" ({type(error).__name__})"
         raise InputError(f"{where}: no Dask scheduler answers there within {CONNECT_S} s{reason}") from None
@@ -103,8 +106,8 @@ def _require_scheduler(address: str, where: str) -> None:
         raise InputError(f"{where}: this is a Dask {str(kind).lower()}, not a scheduler")
 
 
-async def _kind(address: str) -> Any:
-    """What a Dask server calls itself."""
+async def _server_kind(address: str) -> Any:
+    """The kind of server that answers at an address, in Dask's own word."""
     from distributed import Security
     from distributed.core import rpc
 
@@ -113,7 +116,7 @@ async def _kind(address: str) -> Any:
         return (await server.identity())["type"]
 
 
-SENT = (
+WORKER_MODULES = (
     "softdot.outcome",
     "softdot.arrays.kernel_presses",
     "softdot.arrays.presses",
@@ -122,23 +125,23 @@ SENT = (
     "softdot.tolerances.questions",
     "solve.tables.workers",
 )
-"""Modules whose functions workers are asked to call; those of a proof look after themselves."""
+"""Modules whose functions workers are asked to call; a proof checks its own."""
 
 
-def program() -> list[str]:
-    """What tells one softdot from another, for a worker."""
-    return [source_hash(module) for module in SENT]
+def program_hashes() -> list[str]:
+    """Hashes of the source of this softdot, by which it is compared with that of a worker."""
+    return [source_hash(module) for module in WORKER_MODULES]
 
 
 def _require_fitting_workers(client: Any, where: str) -> None:
-    """Every worker has this softdot."""
+    """InputError unless there are workers and each has this softdot."""
     try:
         client.wait_for_workers(1, timeout=WORKERS_S)
     except TimeoutError:
         raise InputError(f"{where}: this scheduler has no workers; start some with 'dask worker ADDRESS'") from None
-    answers = client.run(program, on_error="return")
+    answers = client.run(program_hashes, on_error="return")
     for worker, answer in answers.items():
         if isinstance(answer, Exception):
             raise InputError(f"{where}: its worker {worker} cannot load softdot ({answer}); install it there")
-        if answer != program():
+        if answer != program_hashes():
             raise InputError(f"{where}: its worker {worker} has another softdot; install the same one there")

@@ -1,10 +1,10 @@
-"""Refuses a module of another program that hides one of our packages: Python would load it in place of ours."""
+"""Modules of other programs that hide a package of softdot are refused: Python would load them in its place."""
 
 import sys
 from importlib.util import find_spec
 from pathlib import Path
 
-BESIDE = Path(__file__).resolve().parents[1]
+PACKAGE_FOLDER = Path(__file__).resolve().parents[1]
 PACKAGES = ("foundation", "geometry", "mesh", "solve", "export", "diagnose")
 
 
@@ -14,7 +14,7 @@ def refuse_foreign_packages() -> None:
         known = sys.modules.get(name)
         spec = getattr(known, "__spec__", None) if known is not None else find_spec(name)
         place = Path(spec.origin).resolve() if spec is not None and spec.origin else None
-        if place is not None and place.parent == BESIDE / name:
+        if place is not None and place.parent == PACKAGE_FOLDER / name:
             continue
         where = place or getattr(known, "__file__", None) or "missing"
         said = (

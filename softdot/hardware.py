@@ -1,4 +1,4 @@
-"""What computer a result was made on."""
+"""The computer on which a result was made."""
 
 import os
 import platform
@@ -11,7 +11,7 @@ CPUINFO = Path("/proc/cpuinfo")
 
 
 def hardware() -> dict[str, Any]:
-    """Processor, cores that may be used, memory in GB, Python. Of this computer, whoever works elsewhere."""
+    """Processor, usable cores, memory in GB and Python of this computer, also where others do the work."""
 
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     return {
@@ -24,6 +24,7 @@ def hardware() -> dict[str, Any]:
 
 
 def _processor() -> str:
+    """The name of the processor."""
     lines = CPUINFO.read_text("utf-8").splitlines() if CPUINFO.exists() else []
     names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
     return names[0] if names else platform.processor()

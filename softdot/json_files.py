@@ -1,4 +1,4 @@
-"""Numbers as JSON knows them, and files of them that never exist half-written."""
+"""Data in the types of JSON, and files of them that never exist half-written."""
 
 import json
 import math
@@ -9,7 +9,7 @@ from foundation.files import whole_file
 
 
 def plain(value: Any) -> Any:
-    """The data in Python's own types; NaN and infinity, which JSON lacks, become None."""
+    """The data in Python's own types, floats to twelve digits; NaN and infinity, which JSON lacks, become None."""
     if isinstance(value, dict):
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple | set | frozenset):
@@ -22,11 +22,11 @@ def plain(value: Any) -> Any:
 
 
 def json_text(value: Any) -> str:
-    """Indented, valid JSON with a final newline."""
+    """The data as indented, valid JSON with a final newline."""
     return json.dumps(plain(value), indent=2, allow_nan=False, ensure_ascii=False) + "\n"
 
 
 def write_json(path: Path, value: Any) -> None:
-    """Write JSON that never exists half-written."""
+    """Write data as JSON, whole or not at all."""
     with whole_file(path) as beside:
         beside.write_text(json_text(value), "utf-8")

@@ -1,4 +1,4 @@
-"""The memory that a run needs, and what this machine, its container or its limits leave."""
+"""The memory that a run needs, and the memory that this machine, its container or its limits allow."""
 
 import os
 from collections.abc import Iterator
@@ -7,19 +7,19 @@ from pathlib import Path
 from foundation.errors import InputError
 
 BASE_GB = 0.5
-"""Libraries and fields of a run on a small mesh."""
-ADDRESSES_GB = 2.5
-"""Addresses that the libraries reserve beside that (of ulimit -v): below 3 GB they cannot even be loaded."""
-SOLID_GB, SOLID_ELEMENTS, EXPONENT = 4.6, 64_000, 1.2
+"""Memory of the libraries, and of the fields of a run on a small mesh."""
+RESERVED_ADDRESSES_GB = 2.5
+"""Addresses that the libraries reserve besides (for ulimit -v): below 3 GB they cannot even be loaded."""
+SOLID_GB, SOLID_ELEMENTS, MEMORY_EXPONENT = 4.6, 64_000, 1.2
 """Peak of the factor of a cube by docs/speed.md (0.73 GB of 13,182 elements, 4.6 GB of 63,888)."""
-SLICE_GB = 1.2e-5
-"""Of each element of a slice: a press of 11,016, 38,352 and 93,492 took 0.42, 0.69 and 1.25 GB."""
-CGROUPS = "/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"
+SLICE_GB_PER_ELEMENT = 1.2e-5
+"""Memory for each element of a slice: a press of 11,016, 38,352 and 93,492 took 0.42, 0.69 and 1.25 GB."""
+CGROUP_FILES = "/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"
 
 
 def needed_GB(elements: float, sliced: bool) -> float:
-    """Rough peak memory of a run with so many tetrahedra."""
-    factor = SLICE_GB * elements if sliced else SOLID_GB * (elements / SOLID_ELEMENTS) ** EXPONENT
+    """Rough peak memory, GB, of a run with a number of tetrahedra."""
+    factor = SLICE_GB_PER_ELEMENT * elements if sliced else SOLID_GB * (elements / SOLID_ELEMENTS) ** MEMORY_EXPONENT
     return BASE_GB + factor
 
 
@@ -39,7 +39,9 @@ def refuse_too_little_memory(elements: float, sliced: bool, key: str, value: flo
 
 
 def refuse_no_room_for_libraries() -> None:
-    """InputError where this process may have less memory than loading the libraries takes: they would fail midway."""
+    """InputError where this process may have less memory than loading the libraries takes, as they would fail
+    midway.
+    """
     for what, limit, extra in _limits():
         least = BASE_GB + extra
         if least > limit:
@@ -47,10 +49,10 @@ def refuse_no_room_for_libraries() -> None:
 
 
 def _limits() -> Iterator[tuple[str, float, float]]:
-    """What limits the memory of this process, its GB, and what it counts beside the memory that is used."""
+    """Name and GB of each limit on the memory of this process, and the GB that it counts besides the memory in use."""
     if hasattr(os, "sysconf") and "SC_PHYS_PAGES" in os.sysconf_names:
         yield "this computer", 1e-9 * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"), 0.0
-    for name in CGROUPS:
+    for name in CGROUP_FILES:
         limit = _number(Path(name))
         if limit is not None:
             yield "the limit of this container or job (cgroup)", 1e-9 * limit, 0.0
@@ -60,7 +62,7 @@ def _limits() -> Iterator[tuple[str, float, float]]:
         return
     soft, _ = resource.getrlimit(resource.RLIMIT_AS)
     if soft != resource.RLIM_INFINITY:
-        yield "the limit of addresses (ulimit -v)", 1e-9 * soft, ADDRESSES_GB
+        yield "the limit of addresses (ulimit -v)", 1e-9 * soft, RESERVED_ADDRESSES_GB
 
 
 def _number(path: Path) -> float | None:

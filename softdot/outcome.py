@@ -18,27 +18,27 @@ from softdot.summary import mesh_part, press_part, stopped_solver
 def outcome(config: Config, on_step: OnStep | None = None) -> dict[str, Any]:
     """The summary of a press as `softdot run` gives it, without configuration and times. InputError.
 
-    Remembered under the hash of configuration and program, so that asking again costs nothing.
-    A press that does not converge is an outcome too: solver.converged is False, solver.failure says why. A mesh
-    that failed is not remembered: it may have run out of time.
+    Stored under the hash of configuration and program, so that asking again costs nothing. A press that does not
+    converge is an outcome too: solver.converged is False, solver.failure says why. A mesh that failed is not stored: it
+    may have run out of time.
     """
-    known = remembered(config)
+    known = stored_outcome(config)
     if known is not None:
         return known
-    numbers = solved(config, on_step)
+    numbers = solve_outcome(config, on_step)
     keep_outcome(config, numbers)
     return numbers
 
 
 def keep_outcome(config: Config, numbers: Mapping[str, Any]) -> None:
-    """Remember what was solved, here or elsewhere, where there was a mesh."""
-    if "mesh" in numbers and remembered(config) is None:
-        remember(_name(config), dict(numbers))
+    """Store an outcome that was solved here or elsewhere, where there was a mesh."""
+    if "mesh" in numbers and stored_outcome(config) is None:
+        remember(_stored_name(config), dict(numbers))
 
 
-def remembered(config: Config) -> dict[str, Any] | None:
-    """The outcome of an earlier call, None when there was none."""
-    found = recall(_name(config))
+def stored_outcome(config: Config) -> dict[str, Any] | None:
+    """The outcome of an earlier call, None where there was none."""
+    found = recall(_stored_name(config))
     return found if isinstance(found, dict) else None
 
 
@@ -47,12 +47,12 @@ def outcome_key(config: Config) -> str:
     return data_hash([input_hash(config), source_hash(__name__)])
 
 
-def _name(config: Config) -> str:
+def _stored_name(config: Config) -> str:
     return f"outcome-{outcome_key(config)}"
 
 
-def solved(config: Config, on_step: OnStep | None = None) -> dict[str, Any]:
-    """Check, mesh and press one configuration, numbers only. InputError for what cannot be built."""
+def solve_outcome(config: Config, on_step: OnStep | None = None) -> dict[str, Any]:
+    """Check, mesh and press a configuration; its numbers alone. InputError for what cannot be built."""
     case = Case(config)
     numbers: dict[str, Any] = {"warnings": case.warnings}
     try:

@@ -1,4 +1,4 @@
-"""The output folder: refused before any work, filled beside its place, put there whole."""
+"""The output folder: checked before any work, filled beside its place, and put there whole."""
 
 import json
 import os
@@ -16,7 +16,7 @@ from softdot.no_room import refuse_cut_files, refuse_full_disk
 
 @dataclass(frozen=True)
 class Product:
-    """What one command writes: entries of its folder, and the JSON file among them that names the format."""
+    """The files that one command writes: entries of its folder, and the JSON file among them that names the format."""
 
     format: str
     summary: str
@@ -37,11 +37,11 @@ RUN = Product(
 
 @contextmanager
 def staged_folder(out: Path, product: Product) -> Iterator[Path]:
-    """Yield an empty folder beside out that takes its place when the block ends without an exception.
+    """An empty folder beside out that takes its place when the block ends without an exception.
 
-    A folder of an earlier product of the same kind is replaced. InputError, before the block starts, when out
-    is a file, cannot be written, holds anything else or is written by another process at this moment. After any
-    exception, Ctrl-C too, nothing is left; what a process leaves that was killed is removed by the next one.
+    A folder of an earlier product of the same kind is replaced. InputError, before the block starts, when out is a
+    file, cannot be written, holds anything else or is written by another process at this moment. After any exception,
+    Ctrl-C too, nothing is left; the leavings of a killed process are removed by the next one.
     """
     place = check_output(out, product)
     made = _make_parents(place)
@@ -65,7 +65,7 @@ def staged_folder(out: Path, product: Product) -> Iterator[Path]:
 
 
 def _staging_name(place: Path) -> str:
-    """One name for all processes: who holds that folder is the one that writes."""
+    """The name of the staging folder, the same for all processes: the one that holds that folder writes."""
     return f".{place.name}.softdot"
 
 
@@ -86,7 +86,7 @@ def check_output(out: Path, product: Product) -> Path:
 
 
 def _require_folder(out: Path, place: Path) -> None:
-    """The nearest thing that exists on the way to out is a folder."""
+    """InputError unless the nearest existing path on the way to out is a folder."""
     existing = next(path for path in (place, *place.parents) if path.exists())
     if existing.is_dir():
         return
@@ -148,22 +148,24 @@ def _in_use(out: Path, staging: Path) -> InputError:
 
 
 def _recover(staging: Path, place: Path) -> None:
-    """Remove what a killed process left; one killed between two renamings left the earlier result beside its place."""
-    old = _put_aside(staging)
+    """Remove the leavings of a killed process; one killed between two renamings left the earlier result beside its
+    place.
+    """
+    old = _set_aside_path(staging)
     if staging.exists():
         sweep_folder(staging)
     if old.exists() and not staging.exists():
         shutil.rmtree(old, ignore_errors=True) if place.exists() else old.rename(place)
 
 
-def _put_aside(staging: Path) -> Path:
-    """Where the earlier result stays while the new one takes its place."""
+def _set_aside_path(staging: Path) -> Path:
+    """The path of the earlier result while the new one takes its place."""
     return staging.with_name(f"{staging.name}-old")
 
 
 def _publish(staging: Path, out: Path, product: Product) -> None:
     """Put the staged folder in its place, by renaming where the file system allows it."""
-    old = _put_aside(staging)
+    old = _set_aside_path(staging)
     if staging.parent == out or out.is_mount() or Path.cwd().is_relative_to(out):
         _replace_entries(staging, out, product)
         return
@@ -179,7 +181,7 @@ def _publish(staging: Path, out: Path, product: Product) -> None:
 
 
 def _replace_entries(staging: Path, out: Path, product: Product) -> None:
-    """A mount point and the working folder keep their place: exchange what is in them, the summary last."""
+    """Replace the content of a mount point or of the working folder, which keep their place, the summary last."""
     for name in product.files:
         with suppress(FileNotFoundError):
             path = out / name

@@ -1,4 +1,4 @@
-"""How far a command is: records of the log, bars on a terminal."""
+"""The progress of a command: records of the log, bars on a terminal."""
 
 import logging
 import sys
@@ -13,51 +13,53 @@ if TYPE_CHECKING:
 
 
 LOG = logging.getLogger(__name__)
-MANY = 100
-"""Of more steps than this one line is written for each hundredth."""
+MOST_LINES = 100
+"""With more steps than this, one line is written for each hundredth of them."""
 
 
 class Progress(Protocol):
-    """What the pipeline tells whoever watches."""
+    """Receives the progress of the pipeline."""
 
     def stage(self, name: str) -> None:
-        """A stage begins."""
+        """Announce that a stage begins."""
 
     def step(self, number: int, count: int, text: str) -> None:
-        """A step of the running stage, a load step that has converged say."""
+        """Announce a step of the running stage, such as a load step that has converged."""
 
 
 class Logged:
-    """Every stage and step is a record of the log; softdot.log says who sees it."""
+    """Logs every stage and step; softdot.log says who reads them."""
 
     def __init__(self) -> None:
         self._name = ""
 
     def stage(self, name: str) -> None:
-        """Tell that a stage begins."""
+        """Log that a stage begins."""
         self._name = name
         LOG.info("%s", name)
 
     def step(self, number: int, count: int, text: str) -> None:
-        """Tell how far the running stage is."""
-        told = count <= MANY or number == count or MANY * number // count != MANY * (number - 1) // count
+        """Log the progress of the running stage."""
+        told = (
+            count <= MOST_LINES or number == count or MOST_LINES * number // count != MOST_LINES * (number - 1) // count
+        )
         if told:
             LOG.info("%s %d of %d%s", self._name, number, count, f": {text}" if text else "")
 
 
 class Untold(Logged):
-    """Tells nothing: of many jobs one tells how many are done."""
+    """Reports nothing: used for single jobs where the number of finished ones is reported."""
 
     def stage(self, name: str) -> None:
-        """Nothing."""
+        """Ignore the stage."""
 
     def step(self, number: int, count: int, text: str) -> None:
-        """Nothing."""
+        """Ignore the step."""
 
 
 @contextmanager
 def progress_of(chosen: Namespace) -> Iterator[Progress]:
-    """Bars where standard error is a terminal and --quiet was not given, else lines alone."""
+    """Bars where standard error is a terminal and --quiet was not given, else records of the log alone."""
     if chosen.quiet or not sys.stderr.isatty():
         yield Logged()
         return

@@ -15,7 +15,7 @@ from softdot.log import lines_when_interactive, warn
 from softdot.output import RUN, staged_folder
 from softdot.progress import Logged, Progress
 from softdot.second_process import SecondProcess, draw, make_cad, warm_drawing
-from softdot.system_libraries import named_when_missing
+from softdot.system_libraries import name_missing_library
 
 if TYPE_CHECKING:
     from geometry.dot import DotShape
@@ -61,7 +61,7 @@ def run_case(
     from softdot.summary import heading
 
     progress = progress or Logged()
-    with named_when_missing(), lines_when_interactive():
+    with name_missing_library(), lines_when_interactive():
         check_formats(mesh_formats)
         _ = case.checked
         window = ensure_rendering()

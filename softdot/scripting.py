@@ -82,14 +82,16 @@ def diagnose(
 
 
 class Verdict:
-    """content : verdict.json as plain data. folder : of its files, which live as long as this object or where asked."""
+    """The result of a diagnosis. content : verdict.json as plain data. folder : of its files, which live as long as
+    this object, or where the caller asked for them.
+    """
 
     def __init__(self, content: dict[str, Any], folder: Path, kept: "TemporaryDirectory[str] | None" = None) -> None:
         self.content, self.folder, self._kept = content, folder, kept
 
     @property
     def sentences(self) -> list[str]:
-        """From what is off to what to do next."""
+        """The verdict in sentences, from what is off to what to do next."""
         return list(self.content["summary"])
 
     @property
@@ -99,17 +101,19 @@ class Verdict:
 
     @property
     def grade(self) -> str:
-        """How much it says: agreement, identified, main part, kind only or unexplained."""
+        """How much the verdict says: agreement, identified, main part, kind only or unexplained."""
         return str(self.content["grade"])
 
     @property
     def main_part(self) -> list[dict[str, Any]]:
-        """What most of the mismatch is, where the rest has no name; empty where all or nothing is named."""
+        """Mechanisms that explain most of the mismatch, where the rest has no name; empty where all or nothing is
+        named.
+        """
         return list(self.content["main_part"])
 
     @property
     def missing_physics(self) -> list[dict[str, Any]]:
-        """What is named: mechanism, component, parameters with intervals, probability; empty where nothing is."""
+        """The named mechanisms: name, component, parameters with intervals, probability; empty where none is named."""
         return list(self.content["missing_physics"])
 
     @property
@@ -119,17 +123,17 @@ class Verdict:
 
     @property
     def report(self) -> Path:
-        """The page with everything, which opens offline."""
+        """The path of the page with all results, which opens offline."""
         return self.folder / "report.html"
 
     @property
     def improved(self) -> Path | None:
-        """The rig with what was left out, for `softdot run` and Case.load; None where there is none."""
+        """The file of the rig with the missing physics, for `softdot run` and Case.load; None where there is none."""
         path = self.folder / "improved.toml"
         return path if path.exists() else None
 
     def to_dataframe(self) -> "pd.DataFrame":
-        """One row for each parameter of what is named, with its interval; fixed : stated, not fitted."""
+        """One row for each parameter of a named mechanism, with its interval; fixed : stated, not fitted."""
         import pandas as pd
 
         columns = ["mechanism", "component", "parameter", "value", "low", "high", "unit", "fixed"]
@@ -151,9 +155,9 @@ class Verdict:
         return Path(shutil.copytree(self.folder, folder))
 
     def _repr_html_(self) -> str:
-        """For notebooks: the sentences."""
+        """The sentences as HTML, for notebooks."""
         return "".join(f"<p>{escape(sentence)}</p>" for sentence in self.sentences)
 
     def __repr__(self) -> str:
-        """The sentences."""
+        """The sentences, one per line."""
         return "\n".join(self.sentences)

@@ -16,13 +16,14 @@ if TYPE_CHECKING:
     from geometry.parameters import Segment
     from geometry.solids import Part
 
-PARTS = ("geometry", "topology", "exporters3d", "mesher")
-"""Of build123d; the rest of it loads scikit-learn, pandas and a reader of DXF files, in twice the time of these."""
-DRAWING = ("trimesh", "solve.result", "matplotlib.figure", "pyvista.plotting", "export.pictures")
+CAD_MODULES = ("geometry", "topology", "exporters3d", "mesher")
+"""Modules of build123d; the rest of it loads scikit-learn, pandas and a reader of DXF files, in twice the time."""
+DRAWING_MODULES = ("trimesh", "solve.result", "matplotlib.figure", "pyvista.plotting", "export.pictures")
 
 
 class SecondProcess(WorkerProcess):
-    """Begins at once to compile kernels that this machine has not kept, and to load what it needs.
+    """A worker that at once compiles the kernels which are not cached on this machine, and loads the libraries it
+    needs.
 
     kernels : done when a press will find them.
     """
@@ -34,7 +35,7 @@ class SecondProcess(WorkerProcess):
 
 
 def compile_kernels() -> None:
-    """The dear ones, unless they are kept; the first process compiles the others while it waits."""
+    """Compile the slow kernels unless they are cached; the first process compiles the others while it waits."""
     from solve.fem.warm_up import compiled
 
     if not compiled():
@@ -44,10 +45,10 @@ def compile_kernels() -> None:
 
 
 def load_libraries() -> None:
-    """Load what parts and pictures take, which is two seconds of work."""
+    """Load the libraries for parts and pictures, which takes two seconds."""
     with without_garbage_collection():
-        load_alone("build123d", *PARTS)
-        for name in DRAWING:
+        load_alone("build123d", *CAD_MODULES)
+        for name in DRAWING_MODULES:
             import_module(name)
 
 
@@ -59,7 +60,7 @@ def warm_drawing() -> None:
 
 
 def make_cad(segment: "Segment", dot_shape: "DotShape", folder: Path) -> float:
-    """The parts and their files; returns how many seconds they took. InputError."""
+    """Build the parts and write their files; the seconds that this took. InputError."""
     from geometry import assembly
 
     start = time.perf_counter()
@@ -68,14 +69,14 @@ def make_cad(segment: "Segment", dot_shape: "DotShape", folder: Path) -> float:
 
 
 def write_cad(parts: "Sequence[Part]", folder: Path) -> None:
-    """STEP, 3MF and STL files of the parts."""
+    """Write STEP, 3MF and STL files of the parts."""
     from export import cad
 
     cad.write_cad(parts, folder)
 
 
 def draw(*arguments: Any) -> dict[str, Path]:
-    """As export.pictures.write_pictures."""
+    """Draw the pictures of a run, with the arguments and the result of export.pictures.write_pictures."""
     from export.pictures import write_pictures
 
     return write_pictures(*arguments)

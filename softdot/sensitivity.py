@@ -1,4 +1,4 @@
-"""How much signal a press gives, and the least press that noise lets through."""
+"""Signal per press, and the smallest press whose signal exceeds the noise."""
 
 import numpy as np
 
@@ -17,18 +17,18 @@ def sensitivity(
     deepest = int(np.argmax(indentation_mm))
     least = least_detectable(indentation_mm, voltage_V, noise)
     return {
-        "voltage_per_mm": _ratio(voltage_V[deepest], indentation_mm[deepest]),
-        "charge_pC_per_N": _ratio(charge_pC[deepest], force_N[deepest]),
+        "voltage_per_mm": _quotient(voltage_V[deepest], indentation_mm[deepest]),
+        "charge_pC_per_N": _quotient(charge_pC[deepest], force_N[deepest]),
         "least_detectable_indentation_um": None if least is None else 1e3 * least,
         "noise_V": noise,
     }
 
 
 def least_detectable(indentation_mm: Floats, voltage_V: Floats, noise_V: float) -> float | None:
-    """Depth in mm at which |V| first reaches the noise, None when it never does.
+    """Indentation in mm at which |V| first reaches the noise, None when it never does.
 
-    Linear between load steps; before the first one by the power law V ~ u^n through the first two, as the
-    signal of a held film grows much faster than the depth.
+    Linear between load steps; before the first one by the power law V ~ u^n through the first two, as the signal of a
+    held film grows much faster than the indentation.
     """
     size = np.abs(voltage_V)
     above = np.flatnonzero(size >= noise_V)
@@ -50,5 +50,6 @@ def _exponent(indentation_mm: Floats, size: Floats) -> float:
     return float(np.log(size[2] / size[1]) / np.log(indentation_mm[2] / indentation_mm[1]))
 
 
-def _ratio(value: float, over: float) -> float | None:
+def _quotient(value: float, over: float) -> float | None:
+    """The quotient, None for a divisor of zero."""
     return float(value / over) if over else None

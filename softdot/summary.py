@@ -1,4 +1,4 @@
-"""summary.json: what a run found, in the units that people read."""
+"""The content of summary.json: the results of a run, in the units that people read."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -18,6 +18,7 @@ from solve.solution.schedule import fraction
 from solve.waveform import Waveform
 
 MM, PC, PF, MPA = 1e3, 1e12, 1e12, 1e-6
+"""Factors from SI units to those of the summary."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class History:
 
 
 def history(result: PressResult) -> History:
-    """The history of a press. Electrodes in parallel: charges and capacitances add up, V = Q / C."""
+    """The history of a press with electrodes in parallel: charges and capacitances add up, V = Q / C."""
     steps = result.steps
     charge = np.array([step.film_charge_C.sum() for step in steps])
     weighted = np.array([step.open_circuit_voltage_V @ result.capacitance_F for step in steps])
@@ -44,7 +45,7 @@ def history(result: PressResult) -> History:
 
 
 def heading(config: Config) -> dict[str, Any]:
-    """What is known before any work."""
+    """The keys of the summary that are known before any work."""
     from softdot.version import installed_version
 
     return {
@@ -58,7 +59,7 @@ def heading(config: Config) -> dict[str, Any]:
 
 
 def press_part(model: Model, result: PressResult, along: PressCourse) -> dict[str, Any]:
-    """The part of the summary that the press gives; along : its course."""
+    """The keys of the summary that the press gives. along : its course."""
     past, solved = history(result), along.solved
     readout_voltage_V = None if along.together_V is None else along.together_V[solved]
     voltage = past.open_circuit_voltage_V if readout_voltage_V is None else readout_voltage_V
@@ -83,11 +84,11 @@ def press_part(model: Model, result: PressResult, along: PressCourse) -> dict[st
         },
         "course": course_part(model, result, along),
     }
-    return {**found, "solver": _solver_of(found, result)}
+    return {**found, "solver": _solver_part(found, result)}
 
 
 def _instants(past: History, voltage_V: Floats, along: PressCourse, readout: Readout | None) -> dict[str, float | None]:
-    """When the voltage per depth holds, and when the least detectable depth is reached on the way in."""
+    """Times of the stated voltage per depth, and of the least detectable depth on the way in."""
     times = along.time_s[along.solved]
     deepest = int(np.argmax(past.indentation_mm))
     least = least_detectable(past.indentation_mm, voltage_V, (readout or Readout()).noise_V)
@@ -97,15 +98,17 @@ def _instants(past: History, voltage_V: Floats, along: PressCourse, readout: Rea
     return {"at_time_s": float(times[deepest]), "least_detectable_at_time_s": when}
 
 
-TOGETHER = "together"
-"""The channel of all electrodes in parallel, beside those of each."""
+PARALLEL_CHANNEL = "together"
+"""Name of the channel of all electrodes in parallel, beside those of each."""
 
 
 def channels(along: PressCourse, names: Sequence[str]) -> dict[str, Floats]:
-    """What each amplifier gives over time (n,) by the name of its electrode; of several also of all in parallel."""
+    """Voltage of each amplifier over time (n,) by the name of its electrode; of several electrodes also of all in
+    parallel.
+    """
     if along.channels_V is None or along.together_V is None:
         return {}
-    together = {TOGETHER: along.together_V} if len(names) > 1 else {}
+    together = {PARALLEL_CHANNEL: along.together_V} if len(names) > 1 else {}
     return {**together, **dict(zip(names, along.channels_V.T, strict=True))}
 
 
@@ -128,7 +131,7 @@ def course_part(model: Model, result: PressResult, along: PressCourse) -> dict[s
 
 
 def course_columns(part: Mapping[str, Any]) -> dict[str, Floats]:
-    """The curves of a course_part as columns, electrodes and channels behind what they are: charge_pC_left."""
+    """The curves of a course_part as columns, with electrode or channel at the end of their name: charge_pC_left."""
     columns: dict[str, Floats] = {}
     for key, value in part.items():
         if isinstance(value, Mapping):
@@ -138,8 +141,8 @@ def course_columns(part: Mapping[str, Any]) -> dict[str, Floats]:
     return columns
 
 
-def _solver_of(found: Mapping[str, Any], result: PressResult) -> dict[str, Any]:
-    """How the solver fared; a result with a number that is none did not converge, whatever the residual."""
+def _solver_part(found: Mapping[str, Any], result: PressResult) -> dict[str, Any]:
+    """The report of the solver; a result with a number that is not finite did not converge, whatever the residual."""
     told, nonsense = solver(result), not_finite(found)
     if told["converged"] and nonsense is not None:
         return {**told, "converged": False, "failure": f"{nonsense} is not a finite number"}
@@ -147,7 +150,7 @@ def _solver_of(found: Mapping[str, Any], result: PressResult) -> dict[str, Any]:
 
 
 def not_finite(value: Any, name: str = "") -> str | None:
-    """Where the first NaN or infinite number of a summary stands, such as 'readout_voltage_V[1]'; None without one."""
+    """The place of the first NaN or infinite number of a summary, such as 'readout_voltage_V[1]'; None without one."""
     if isinstance(value, Mapping):
         items = [(item, f"{name}.{key}" if name else str(key)) for key, item in value.items()]
     elif isinstance(value, list | tuple | np.ndarray) and np.ndim(value) > 0:
@@ -172,7 +175,7 @@ def film(result: PressResult) -> dict[str, Any]:
 
 
 def electrodes(result: PressResult, along: PressCourse) -> list[dict[str, Any]]:
-    """Charge and voltage of each electrode by itself at the steps."""
+    """Charge and voltage of each electrode at the solved steps."""
     return [
         {
             "name": name,
@@ -186,7 +189,7 @@ def electrodes(result: PressResult, along: PressCourse) -> list[dict[str, Any]]:
 
 
 def solver(result: PressResult) -> dict[str, Any]:
-    """How the solver fared; step 0 is the unloaded state and does not count."""
+    """The report of the solver; step 0 is the unloaded state and does not count."""
     return {
         "converged": result.converged,
         "failure": result.failure,
@@ -198,7 +201,7 @@ def solver(result: PressResult) -> dict[str, Any]:
 
 
 def stopped_solver(failure: str) -> dict[str, Any]:
-    """The solver's part when a stage before it failed."""
+    """The report of the solver where an earlier stage failed."""
     return {"converged": False, "failure": failure, "load_steps": 0}
 
 

@@ -6,19 +6,19 @@ from contextlib import contextmanager
 
 from foundation.errors import InputError
 
-PACKAGES = {
+DEBIAN_PACKAGES = {
     "libGL.so.1": "libgl1",
     "libX11.so.6": "libx11-6",
     "libEGL.so.1": "libegl1",
     "libgomp.so.1": "libgomp1",
     "libstdc++.so.6": "libstdc++6",
 }
-ALL_OF_THEM = "apt-get install -y libgl1 libegl1"
+INSTALL_COMMAND = "apt-get install -y libgl1 libegl1"
 
 
 @contextmanager
-def named_when_missing() -> Iterator[None]:
-    """Turn the ImportError of a wheel that lacks a system library into an InputError with the remedy."""
+def name_missing_library() -> Iterator[None]:
+    """Turn an ImportError of a wheel that lacks a system library into an InputError with the remedy, within a block."""
     try:
         yield
     except ImportError as error:
@@ -26,7 +26,7 @@ def named_when_missing() -> Iterator[None]:
         if found is None:
             raise
         library = found.group(1)
-        package = PACKAGES.get(library, "the package that holds it")
+        package = DEBIAN_PACKAGES.get(library, "the package that holds it")
         raise InputError(
-            f"system library {library} is missing: install {package} (on Debian or Ubuntu '{ALL_OF_THEM}')"
+            f"system library {library} is missing: install {package} (on Debian or Ubuntu '{INSTALL_COMMAND}')"
         ) from error

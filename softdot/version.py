@@ -4,7 +4,7 @@ from importlib.metadata import PackageNotFoundError, version
 
 
 def installed_version() -> str:
-    """Version of the installed distribution, "unknown" for a bare copy of the sources."""
+    """The version of the installed distribution, "unknown" for a bare copy of the sources."""
     try:
         return version("softdot")
     except PackageNotFoundError:

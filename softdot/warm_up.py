@@ -1,4 +1,4 @@
-"""The kernels compiled in one worker before others start."""
+"""Kernels are compiled in one worker before others start."""
 
 from foundation.cache import data_hash, recall, remember
 from foundation.executor import Executor
@@ -6,7 +6,7 @@ from foundation.source_hash import source_hash
 from softdot.config.loading import config_from
 from softdot.prepared_press import PreparedPress
 
-TINY = {
+TINY_CONFIG = {
     "segment": {
         "effector": {"height_mm": 0.5},
         "medium1": {"thickness_mm": 0.5},
@@ -26,9 +26,9 @@ def warm_up(executor: Executor) -> None:
 
 def press_tiny() -> None:
     """A press that takes every kernel, remembered as done."""
-    PreparedPress(config_from(TINY)).solve()
+    PreparedPress(config_from(TINY_CONFIG)).solve()
     remember(_name(), True)
 
 
 def _name() -> str:
-    return f"warm-{data_hash([TINY, source_hash('solve.press')])}"
+    return f"warm-{data_hash([TINY_CONFIG, source_hash('solve.press')])}"

@@ -11,7 +11,7 @@ from softdot.json_files import plain, write_json
 from softdot.log import warn
 from softdot.output import Product, staged_folder
 from softdot.progress import Logged, Progress
-from softdot.system_libraries import named_when_missing
+from softdot.system_libraries import name_missing_library
 from softdot.version import installed_version
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def run_array(
     from softdot.executors import executor_for
 
     progress = progress or Logged()
-    with named_when_missing():
+    with name_missing_library():
         case = ArrayCase(config)
         warnings = case.warnings
         if "kernel" in parts:

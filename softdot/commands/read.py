@@ -52,10 +52,10 @@ def run_read(
     from softdot.reading.line_reading import content, read_line
     from softdot.reading.recorded_file import recorded_voltages
     from softdot.reading.signals import shown_signals, signals
-    from softdot.system_libraries import named_when_missing
+    from softdot.system_libraries import name_missing_library
 
     progress = progress or Logged()
-    with named_when_missing():
+    with name_missing_library():
         names = named_decoders(decoders)
         cells = None if recording is not None and not (text or "").strip() else cells_of(text or "", table)
         kernel = opened_kernel(kernel_folder, config)

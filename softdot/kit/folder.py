@@ -29,7 +29,7 @@ from softdot.log import LOG_FILE, log_file, warn
 from softdot.output import Product, staged_folder
 from softdot.prepared_press import PreparedPress
 from softdot.progress import Logged, Progress
-from softdot.system_libraries import named_when_missing
+from softdot.system_libraries import name_missing_library
 from softdot.tolerances.budget import tolerance_budget
 from softdot.tolerances.budget_outcome import UNFINISHED, BudgetOutcome, failed_budget
 from solve.materials.parameters import PiezoelectricFilm
@@ -54,7 +54,7 @@ def make_kit(
     processes of this computer, or on the Dask cluster of a scheduler (tcp://HOST:PORT).
     """
     progress = progress or Logged()
-    with named_when_missing(), executor_for(scheduler) as executor:
+    with name_missing_library(), executor_for(scheduler) as executor:
         warnings = _kit_warnings(config)
         ensure_rendering()
         with staged_folder(out, KIT) as folder:

@@ -15,7 +15,7 @@ from softdot.plate.options import PlateRequest
 from softdot.plate.picture import draw_plate
 from softdot.plate.summary import summary_of
 from softdot.progress import Logged, Progress
-from softdot.system_libraries import named_when_missing
+from softdot.system_libraries import name_missing_library
 
 DEFLECTION_MM, ANGULAR_DEFLECTION = 0.003, 0.2
 """Deviation of facets in mm and in radians: tip and flank of a dot of radius 0.8 mm stay within 0.005 mm, a tenth of a
@@ -31,7 +31,7 @@ TOLERANCE_TITLES: dict[QuantityName, str] = {"base_diameter_mm": "dot diameter",
 def make_plate(request: PlateRequest, out: Path, progress: Progress | None = None) -> dict[str, Any]:
     """Build, check and write one plate into the folder out; the content of plate.json. InputError."""
     progress = progress or Logged()
-    with named_when_missing():
+    with name_missing_library():
         built = build_plate(request)
         ensure_rendering()
         with staged_folder(out, PLATE) as folder:

@@ -199,7 +199,7 @@ def _outcome(task: str, arguments: Sequence[Any], tell: Tell) -> tuple[str, Any]
     """The kind of answer and its content; what went wrong is one sentence, and its traceback a line of the log."""
     from mesh.types import MeshingError
     from softdot.arrays.presses import StoppedPressError
-    from softdot.no_room import without_room
+    from softdot.no_room import no_room_sentence
     from solve.solution.errors import NoEquilibriumError
     from solve.solution.full_load import StoppedShortError
     from solve.solution.linear import LinearSolveError
@@ -216,5 +216,5 @@ def _outcome(task: str, arguments: Sequence[Any], tell: Tell) -> tuple[str, Any]
         return "refused", f"not converged: {error}"
     except Exception as error:
         LOG.debug("%s failed", task, exc_info=True)
-        said = without_room(error)
+        said = no_room_sentence(error)
         return "refused", said[0] if said else f"this failed inside softdot ({type(error).__name__}): please report it"

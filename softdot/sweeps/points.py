@@ -11,7 +11,7 @@ from foundation.executor import Executor, LostError, completed_calls
 from softdot.config.schema import Config
 from softdot.dask_cluster import AwayError
 from softdot.executors import executor_for
-from softdot.outcome import keep_outcome, outcome, outcome_key, remembered
+from softdot.outcome import keep_outcome, outcome, outcome_key, stored_outcome
 from softdot.progress import Logged, Progress
 
 Record = dict[str, Any]
@@ -68,7 +68,7 @@ def solve_points(
     progress = progress or Logged()
     keys = [outcome_key(config) for config in configs]
     distinct = dict(zip(keys, configs, strict=True))
-    records = {key: solve_point(config) for key, config in distinct.items() if remembered(config) is not None}
+    records = {key: solve_point(config) for key, config in distinct.items() if stored_outcome(config) is not None}
     missing = {key: config for key, config in distinct.items() if key not in records}
     with executor_for(workers=workers) if executor is None else nullcontext(executor) as on:
         for key, record in solve_all(on, missing):

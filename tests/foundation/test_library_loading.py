@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from foundation.library_loading import load_alone, without_garbage_collection
-from softdot.second_process import PARTS
+from softdot.second_process import CAD_MODULES
 
 CODE = """
 import sys
@@ -24,7 +24,7 @@ print(hasattr(build123d, "__wrapped__"), build123d.Box.__name__, build123d.Solid
 @pytest.mark.process
 def test_build123d_is_loaded_in_part_and_as_a_whole_when_more_is_asked_for():
     done = subprocess.run(
-        [sys.executable, "-c", CODE.format(parts=PARTS)], capture_output=True, encoding="utf-8", check=True
+        [sys.executable, "-c", CODE.format(parts=CAD_MODULES)], capture_output=True, encoding="utf-8", check=True
     )
     assert done.stdout.split() == ["False", "6.0", "False", "Box", "True", "True"]
 

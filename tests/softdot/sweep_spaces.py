@@ -5,14 +5,14 @@ from contextlib import contextmanager
 
 from foundation.executor import HERE
 from softdot.sweeps.points import solve_point
-from softdot.warm_up import TINY
+from softdot.warm_up import TINY_CONFIG
 
 DEPTHS = "press.indentation_mm"
 
 
 def space_of(*axes, **sweep):
     """Tables of a space of tiny points."""
-    return {**copy.deepcopy(TINY), "sweep": {"axes": list(axes), **sweep}}
+    return {**copy.deepcopy(TINY_CONFIG), "sweep": {"axes": list(axes), **sweep}}
 
 
 def depths(*values):

@@ -132,7 +132,7 @@ def test_stated_sizes_stay():
 
 
 def test_an_accuracy_that_needs_too_many_elements_is_refused_by_its_own_name(monkeypatch):
-    monkeypatch.setattr("softdot.checks.TOO_MANY", 100)
+    monkeypatch.setattr("softdot.checks.MOST_ELEMENTS", 100)
     with pytest.raises(InputError, match=r"mesh\.accuracy_percent = 0\.4: mesh\.contact_element_size_mm = .* elements"):
         _ = Case(config_from({**SLICE, "mesh": {"accuracy_percent": 0.4}})).sized
 

@@ -5,7 +5,7 @@ import warnings
 import pytest
 
 from softdot import Case, ResultWarning
-from softdot.outcome import solved
+from softdot.outcome import solve_outcome
 
 TABLES = {
     "segment": {
@@ -33,7 +33,9 @@ def test_two_millimetres_of_foam_pressed_to_their_solid_are_told_in_python():
 
 
 def test_an_element_inside_out_stands_beside_the_numbers_of_a_summary():
-    assert any("of medium1 is turned inside out" in sentence for sentence in solved(deep(1.96).config)["warnings"])
+    assert any(
+        "of medium1 is turned inside out" in sentence for sentence in solve_outcome(deep(1.96).config)["warnings"]
+    )
 
 
 def test_half_the_depth_is_no_doubt():

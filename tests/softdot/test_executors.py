@@ -25,7 +25,7 @@ from softdot.outcome import outcome
 from softdot.progress import Logged
 from softdot.sweeps import read_table, run_sweep, solve_points, space_from
 from softdot.sweeps.points import solve_all
-from softdot.warm_up import TINY
+from softdot.warm_up import TINY_CONFIG
 from tests.softdot.complaints import complaints
 from tests.softdot.interrupts import heard
 from tests.softdot.sweep_spaces import DEPTHS, depths, space_of
@@ -48,7 +48,7 @@ def space(tmp_path):
 
 
 def at_depth(depth):
-    return config_from({**TINY, "press": {"indentation_mm": depth, "load_steps": 1}})
+    return config_from({**TINY_CONFIG, "press": {"indentation_mm": depth, "load_steps": 1}})
 
 
 def refused(space, address, tmp_path, capfd):

@@ -13,7 +13,7 @@ from foundation.errors import InputError
 from softdot.cli import main
 from softdot.config.toml import key_path, with_value
 from softdot.sweeps.space import load_space, space_from
-from softdot.warm_up import TINY
+from softdot.warm_up import TINY_CONFIG
 from tests.cases import for_each
 from tests.softdot.sweep_spaces import depths, space_of
 from tests.softdot.toml_text import toml_text
@@ -100,7 +100,7 @@ BAD_SWEEPS = {
 def test_a_bad_space_is_one_sentence(name, tmp_path, capfd):
     sweep, sentence = BAD_SWEEPS[name]
     path = tmp_path / "space.toml"
-    path.write_text(toml_text(TINY if sweep is None else {**TINY, "sweep": sweep}), "utf-8")
+    path.write_text(toml_text(TINY_CONFIG if sweep is None else {**TINY_CONFIG, "sweep": sweep}), "utf-8")
     assert main(["sweep", str(path), "-o", str(tmp_path / "out")]) == 2
     printed = capfd.readouterr()
     assert printed.err == f"softdot: {sentence}\n"
@@ -157,7 +157,7 @@ def test_the_example_is_a_space():
 
 def test_the_space_of_the_document_is_accepted():
     block = re.findall(r"```\n(\[sweep\].*?)```", (ROOT / "docs" / "sweep.md").read_text("utf-8"), re.DOTALL)[0]
-    assert [point.reason for point in space_from({**TINY, **tomllib.loads(block)}).points] == [None] * 64
+    assert [point.reason for point in space_from({**TINY_CONFIG, **tomllib.loads(block)}).points] == [None] * 64
 
 
 def test_a_grid_is_every_combination_last_axis_fastest():

@@ -3,7 +3,7 @@
 import pytest
 
 from softdot.cli import main
-from softdot.system_libraries import named_when_missing
+from softdot.system_libraries import name_missing_library
 from tests.softdot.complaints import complaints
 
 
@@ -21,5 +21,5 @@ def test_a_missing_library_names_its_package(tmp_path, stages, capfd):
 
 
 def test_another_import_error_is_left_alone():
-    with pytest.raises(ModuleNotFoundError), named_when_missing():
+    with pytest.raises(ModuleNotFoundError), name_missing_library():
         raise ModuleNotFoundError("No module named 'build123d'")

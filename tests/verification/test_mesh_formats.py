@@ -17,7 +17,7 @@ from mesh.options import MeshOptions
 from softdot.case import Case
 from softdot.config.default_design import with_default_design
 from softdot.config.loading import config_from
-from softdot.outcome import solved
+from softdot.outcome import solve_outcome
 from softdot.verify.body import ElasticBody
 from solve.materials.laws import LinearLaw, bulk_modulus
 from tests.solve.segments import cap, coarse_mesh, segment
@@ -139,7 +139,7 @@ def test_a_press_on_its_own_exported_mesh_gives_the_same_numbers(name, tables, e
     config = config_from(with_default_design(tables))
     (path,) = write_mesh(Case(config).mesh, [extension], tmp_path)
     own = config_from(with_default_design({**tables, "mesh": {"file": str(path)}}))
-    before, after = (solved(one, lambda *_: None) for one in (config, own))
+    before, after = (solve_outcome(one, lambda *_: None) for one in (config, own))
     solved_as = 2 ** len(before["mesh"]["symmetry_planes"])
     assert after["mesh"]["tetrahedra"] == solved_as * before["mesh"]["tetrahedra"]
     for key in ("reaction_force_N", "film_charge_pC", "open_circuit_voltage_V"):

@@ -11,7 +11,7 @@ import functools
 import numpy as np
 import pytest
 
-from softdot.outcome import solved
+from softdot.outcome import solve_outcome
 from softdot.studies.paper.segment import segment_config
 
 MESHERS = [pytest.param("layered"), pytest.param("pytetwild", marks=pytest.mark.evidence)]
@@ -24,7 +24,7 @@ SOFT, MIDDLE, HARD = 0.05, 1.0, 5.0  # modulus of medium 2, MPa
 def force_and_millivolts(mesher, boundary, h1_mm, e2_MPa, element_size_mm):
     mesh = {"mesher": mesher, "element_size_mm": element_size_mm, "contact_element_size_mm": element_size_mm / 3.0}
     config = segment_config(boundary, h1_mm, e2_MPa, load_steps=3, mesh=mesh)
-    found = solved(config, lambda *_: None)
+    found = solve_outcome(config, lambda *_: None)
     assert found["solver"]["converged"], found["solver"]
     return found["reaction_force_N"][-1], 1e3 * found["open_circuit_voltage_V"][-1] / 337
 

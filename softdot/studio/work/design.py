@@ -20,7 +20,7 @@ from softdot.config.mistakes import mistakes
 from softdot.config.schema import Config
 from softdot.config.toml import parse_toml
 from softdot.json_files import plain
-from softdot.second_process import PARTS
+from softdot.second_process import CAD_MODULES
 
 NAME = "design"
 Solids = dict[str, Any]
@@ -183,5 +183,5 @@ def examine(text: str) -> dict[str, Any]:
 
 def warm_up() -> None:
     """Load what a drawn design takes."""
-    load_alone("build123d", *PARTS)
+    load_alone("build123d", *CAD_MODULES)
     draw("")
