@@ -22,10 +22,10 @@ from geometry.fabrication.parameters import (  # noqa: E402
     recipe_for,
 )
 from softdot.commands.new import (  # noqa: E402
-    acting,
-    allowed,
+    acting_condition,
+    allowed_values,
     config_schema,
-    toml,
+    toml_value,
 )
 from softdot.config.not_modelled import NOT_MODELLED  # noqa: E402
 from solve.materials.parameters import PiezoelectricFilm, library_tables  # noqa: E402
@@ -111,8 +111,8 @@ def _keys(title: str, name: str, keys: list[str], definitions: Json, examples: J
     for key in keys:
         value, required = table["properties"][key], key in table.get("required", [])
         meaning = value.get("description") or _description(value, definitions)
-        meaning = "; ".join(part for part in (meaning, acting(value).replace("acts only", "only")) if part)
-        bounds = HINTS.get(f"{name}.{key}") or _in_short(allowed(value))
+        meaning = "; ".join(part for part in (meaning, acting_condition(value).replace("acts only", "only")) if part)
+        bounds = HINTS.get(f"{name}.{key}") or _in_short(allowed_values(value))
         rows.append([f"`{key}`", meaning, _default(title, key, value, required, examples), bounds])
     return _table(["key", "meaning", "default", "allowed"], rows)
 
@@ -120,7 +120,7 @@ def _keys(title: str, name: str, keys: list[str], definitions: Json, examples: J
 def _common_note() -> str:
     return (
         "Beside these, a material states its `model`, one of the following, and the constants of that model. "
-        f"Without a density a film has {toml(PiezoelectricFilm.model_fields['density_kg_m3'].default)} kg/m³."
+        f"Without a density a film has {toml_value(PiezoelectricFilm.model_fields['density_kg_m3'].default)} kg/m³."
     )
 
 
@@ -141,8 +141,8 @@ def _default(title: str, key: str, value: Json, required: bool, examples: Json) 
     if isinstance(default, dict) and default:
         return "its own defaults"
     if default not in (None, [], {}):
-        return f"`{toml(default)}`"
-    shown = f"e.g. `{toml(examples[key])}`" if key in examples else f"table `{_head(title, key, value)}`"
+        return f"`{toml_value(default)}`"
+    shown = f"e.g. `{toml_value(examples[key])}`" if key in examples else f"table `{_head(title, key, value)}`"
     return f"{'required' if required else 'none'}, {shown}"
 
 
@@ -164,7 +164,7 @@ def material_table() -> str:
     """The built-in materials with their constants."""
     about, rows, last = ("model", "source", "confidence"), [], ""
     for name, table in library_tables().items():
-        constants = ", ".join(f"{key} {toml(value)}" for key, value in table.items() if key not in about)
+        constants = ", ".join(f"{key} {toml_value(value)}" for key, value in table.items() if key not in about)
         source = "the same" if table["source"] == last else table["source"]
         rows.append([f"`{name}`", table["model"], constants, table["confidence"], source])
         last = table["source"]

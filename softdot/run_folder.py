@@ -27,7 +27,7 @@ LOG = logging.getLogger(__name__)
 
 
 class StageClock:
-    """Wall-clock seconds by stage."""
+    """A clock that adds up wall-clock seconds by stage."""
 
     def __init__(self) -> None:
         self.seconds = dict.fromkeys(("geometry", "mesh", "solve", "uncertainty", "export"), 0.0)
@@ -68,16 +68,16 @@ def run_case(
         # the second process ends first: it must write nothing into a folder that is being removed
         with staged_folder(out, RUN) as folder, ask or SecondProcess() as second:
             second(ensure_rendering, window)
-            filled = _fill(case, folder, progress, mesh_formats, second)
+            filled = _fill_folder(case, folder, progress, mesh_formats, second)
             summary: dict[str, Any] = heading(case.config) | plain(filled)
             write_json(folder / RUN.summary, summary)
     return summary
 
 
-def _fill(
+def _fill_folder(
     case: PreparedPress, folder: Path, progress: Progress, mesh_formats: Sequence[str], ask: SecondProcess
 ) -> dict[str, Any]:
-    """Everything but summary.json; returns the summary. Parts and pictures are made beside mesh, press and files."""
+    """Make everything but summary.json and return the summary; parts and pictures are made beside mesh and press."""
     from mesh.files.formats import write_mesh
     from mesh.types import MeshingError
     from softdot.config.loading import unused_material_warnings
@@ -88,7 +88,7 @@ def _fill(
     clock, config, model = StageClock(), case.config, case.model
     summary = {**heading(config), "warnings": [*case.warnings, *unused_material_warnings(config)]}
     warn(summary["warnings"])
-    _tell(config)
+    _log_preliminaries(config)
     cad = ask(make_cad, model.segment, case.dot, folder / "cad")
     progress.stage("mesh")
     try:
@@ -108,7 +108,7 @@ def _fill(
         if not ask.kernels.done():
             compile_cheap()
             wait((ask.kernels,))
-        pressed = case.press(_reporting(progress))
+        pressed = case.press(_report_steps_to(progress))
         result, along = pressed.result, pressed.course
     if ahead is not None and ahead.cancel():  # not begun: it is done here, while the second process draws
         ahead = None
@@ -129,8 +129,8 @@ def _fill(
     return {**summary, "timing_s": clock.seconds}
 
 
-def _tell(config: Config) -> None:
-    """What a user should know before it begins: what was not stated, and that the first run takes longer."""
+def _log_preliminaries(config: Config) -> None:
+    """Log, before the work begins, which keys were not stated and that kernels have yet to be compiled."""
     from softdot.checks import COMPILE_S
     from softdot.config.default_design import default_design_line
     from solve.fem.warm_up import compiled
@@ -144,7 +144,7 @@ def _tell(config: Config) -> None:
 def write_outputs(
     dot_shape: DotShape, result: PressResult, summary: dict[str, Any], folder: Path, pictures: Future[dict[str, Path]]
 ) -> None:
-    """ParaView files of what converged, and the report with the pictures, which are made beside."""
+    """Write ParaView files of what converged, and the report with the pictures, which another process makes."""
     from export.report import write_report
     from export.viewer_data import viewer_data
     from export.vtu import write_results
@@ -154,8 +154,8 @@ def write_outputs(
     write_report(summary, pictures.result(), viewer, folder / "report.html")
 
 
-def _reporting(progress: Progress) -> OnStep:
-    """Pass the solver's steps on as text."""
+def _report_steps_to(progress: Progress) -> OnStep:
+    """A function that passes the solver's steps on as text."""
 
     def on_step(step: Step, number: int, count: int) -> None:
         progress.step(number, count, f"{1e3 * step.indentation_m:.3f} mm, {step.reaction_force_N:.3g} N")

@@ -1,4 +1,4 @@
-"""What commands do, in a line of Python each: a run, derivatives, many designs, a recording to a verdict."""
+"""Commands as functions, in a line of Python each: a run, derivatives, many designs, a recording to a verdict."""
 
 import shutil
 from collections.abc import Mapping, Sequence
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def run_config(config: "Config", out: Path, progress: "Progress | None" = None) -> dict[str, Any]:
-    """All files of `softdot run` in the folder out; returns summary.json. As softdot.run_folder.run_case."""
+    """Write all files of `softdot run` into the folder out and return its summary; see softdot.run_folder.run_case."""
     from softdot.case import Case
     from softdot.run_folder import run_case
 

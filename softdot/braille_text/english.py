@@ -12,14 +12,14 @@ from foundation.errors import InputError
 # a number with its points and commas; letters; Braille; anything else, one by one
 TOKEN = re.compile(r"(?:(?<![A-Za-z])\.)?[0-9][0-9.,]*|[A-Za-z]+|[\u2800-\u28ff]+|.", re.DOTALL)
 DIGIT = re.compile("[0-9]")
-"""Of the table: other characters that Unicode calls digits, such as \u00b2 or \u0663, have no cells here."""
+"""Digits with cells in the table; others that Unicode calls so, such as \u00b2 or \u0663, have none."""
 CAPITALS = re.compile(r"[A-Z]+|[a-z]+")
 
 
 def english_cells(text: str, advice: str) -> str:
-    """One line of text as Unicode Braille cells; Braille characters pass through as they are.
+    """One line of text as Unicode Braille cells; Braille characters pass through unchanged.
 
-    InputError, which names the character, its place and then the advice, for what the table does not hold.
+    InputError, which names the character, its place and then the advice, for a character that the table lacks.
     """
     cells, table = "", english_table()
     for token in TOKEN.finditer(text):
@@ -33,7 +33,9 @@ def english_cells(text: str, advice: str) -> str:
         elif word in table["signs"]:
             cells += table["signs"][word]
         else:
-            raise InputError(f"text: {_named(word)} at place {token.start() + 1} is not in {table['name']}; {advice}")
+            raise InputError(
+                f"text: {_character_name(word)} at place {token.start() + 1} is not in {table['name']}; {advice}"
+            )
     return cells
 
 
@@ -44,14 +46,14 @@ def english_table() -> dict[str, Any]:
 
 
 def _number(number: str, follows: str, table: dict[str, Any]) -> str:
-    """Digits behind the number sign; a letter from a to j that follows would read as a digit without a sign."""
+    """Digits behind the number sign; a letter from a to j that follows gets a sign, since it would read as a digit."""
     signs = table["indicators"]
     cells = "".join(table["digits"].get(character) or table["signs"][character] for character in number)
     return f"{signs['number']}{cells}{signs['letter'] if follows and follows in 'abcdefghij' else ''}"
 
 
 def _letters(word: str, table: dict[str, Any]) -> str:
-    """Letters with a sign before one capital, or before and behind several."""
+    """Letters, with a sign before one capital, or before and behind several."""
     signs, cells = table["indicators"], ""
     for run in CAPITALS.finditer(word):
         letters = run.group()
@@ -63,8 +65,8 @@ def _letters(word: str, table: dict[str, Any]) -> str:
     return cells
 
 
-def _named(character: str) -> str:
-    """The character with its code and its Unicode name."""
+def _character_name(character: str) -> str:
+    """A character with its code and its Unicode name, for a message."""
     name = unicodedata.name(character, "control character")
     shown = f"'{character}' " if character.isprintable() else ""
     return f"{shown}(U+{ord(character):04X}, {name.lower()})"

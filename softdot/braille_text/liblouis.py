@@ -9,20 +9,20 @@ from importlib.util import find_spec
 
 from foundation.errors import InputError
 
-INSTALL = (
+INSTALL_ADVICE = (
     "liblouis translates contracted Braille and other languages: install it (Debian and Ubuntu 'apt-get install "
     "liblouis-bin', Fedora 'dnf install liblouis-utils', macOS 'brew install liblouis') and name a table, "
     "such as --table en-ueb-g2.ctb"
 )
-DISPLAY = "unicode.dis"
-UNKNOWN = re.compile("⠄⡳⠭[⠀-⣿]*?⠄")
-"""What liblouis writes for a character that its table lacks: the Braille of '\\xhhhh'."""
+DISPLAY_TABLE = "unicode.dis"
+UNKNOWN_CHARACTER = re.compile("⠄⡳⠭[⠀-⣿]*?⠄")
+"""The cells that liblouis writes for a character that its table lacks: the Braille of '\\xhhhh'."""
 TIMEOUT_S = 60
 
 
 @dataclass(frozen=True)
 class Translator:
-    """How liblouis is called: its Python binding or its program; version as it says."""
+    """The liblouis of this machine. called_by : its Python binding or the path of its program."""
 
     called_by: str
     version: str
@@ -51,10 +51,10 @@ def louis_cells(text: str, table: str) -> str:
     """
     translator = liblouis()
     if translator is None:
-        raise InputError(f"--table '{table}': liblouis is not installed; {INSTALL}")
+        raise InputError(f"--table '{table}': liblouis is not installed; {INSTALL_ADVICE}")
     cells = _translate(translator, text, table)
-    if UNKNOWN.search(cells):
-        lacking = [c for c in dict.fromkeys(text) if UNKNOWN.search(_translate(translator, c, table))]
+    if UNKNOWN_CHARACTER.search(cells):
+        lacking = [c for c in dict.fromkeys(text) if UNKNOWN_CHARACTER.search(_translate(translator, c, table))]
         shown = ", ".join(f"'{c}' (U+{ord(c):04X}) at place {text.index(c) + 1}" for c in lacking)
         raise InputError(f"text: {shown} is not in the liblouis table '{table}'; choose another table by --table")
     return cells
@@ -63,7 +63,7 @@ def louis_cells(text: str, table: str) -> str:
 def _translate(translator: Translator, text: str, table: str) -> str:
     if translator.called_by == "louis":
         return _by_binding(text, table)
-    tables = f"{DISPLAY},{table}"
+    tables = f"{DISPLAY_TABLE},{table}"
     done = subprocess.run(
         [translator.called_by, "--forward", tables], input=text, capture_output=True, timeout=TIMEOUT_S,
         encoding="utf-8", check=False,
@@ -78,7 +78,7 @@ def _by_binding(text: str, table: str) -> str:
     import louis
 
     try:
-        return str(louis.translateString([DISPLAY, table], text))
+        return str(louis.translateString([DISPLAY_TABLE, table], text))
     except RuntimeError:
         raise _unknown_table(table) from None
 

@@ -1,19 +1,21 @@
-"""A text as lines of Braille cells, broken at blanks where they are longer than asked."""
+"""Text as lines of Braille cells, broken at blanks where they are longer than allowed."""
 
 from dataclasses import dataclass
 
 from foundation.errors import InputError
 from softdot.braille_text.english import english_cells, english_table
-from softdot.braille_text.liblouis import INSTALL, liblouis, louis_cells
+from softdot.braille_text.liblouis import INSTALL_ADVICE, liblouis, louis_cells
 
-LONGEST_LINE = 40
-"""Cells on a line of a Braille page; a longer line is broken only when asked."""
+LONGEST_LINE_CELLS = 40
+"""Cells on a line of a Braille page; a longer line is broken only on request."""
 BLANK = "\u2800"
 
 
 @dataclass(frozen=True)
 class Translation:
-    """Lines of Unicode Braille cells; table : what they were translated by; liblouis : its version, if used."""
+    """Lines of Unicode Braille cells. table : by which they were translated. liblouis : its version where it was
+    used.
+    """
 
     lines: tuple[str, ...]
     table: str
@@ -21,30 +23,31 @@ class Translation:
 
 
 def translate(text: str, table: str | None = None, width_cells: int | None = None) -> Translation:
-    """Translate line by line; lines longer than width_cells are broken at blanks. InputError."""
+    """Translate a text line by line; lines longer than width_cells are broken at blanks. InputError."""
     rows = text.strip("\n").split("\n")
     if table is None:
-        lines = [english_cells(row, INSTALL) for row in rows]
-        return Translation(_fit(lines, width_cells), english_table()["name"], None)
+        lines = [english_cells(row, INSTALL_ADVICE) for row in rows]
+        return Translation(_fit_lines(lines, width_cells), english_table()["name"], None)
     lines = [louis_cells(row, table) for row in rows]
     found = liblouis()
-    return Translation(_fit(lines, width_cells), table, found.version if found else None)
+    return Translation(_fit_lines(lines, width_cells), table, found.version if found else None)
 
 
-def _fit(lines: list[str], width_cells: int | None) -> tuple[str, ...]:
+def _fit_lines(lines: list[str], width_cells: int | None) -> tuple[str, ...]:
+    """The lines broken to a width, or refused where they are longer than a page. InputError."""
     stripped = [line.rstrip(BLANK) for line in lines]
     if width_cells is not None:
-        return tuple(part for line in stripped for part in _broken(line, width_cells))
+        return tuple(part for line in stripped for part in _break_line(line, width_cells))
     for number, line in enumerate(stripped, 1):
-        if len(line) > LONGEST_LINE:
+        if len(line) > LONGEST_LINE_CELLS:
             raise InputError(
-                f"text: line {number} has {len(line)} cells, at most {LONGEST_LINE} are allowed on a line; "
+                f"text: line {number} has {len(line)} cells, at most {LONGEST_LINE_CELLS} are allowed on a line; "
                 f"break it by --width-cells N"
             )
     return tuple(stripped)
 
 
-def _broken(line: str, width: int) -> list[str]:
+def _break_line(line: str, width: int) -> list[str]:
     """One line broken at blanks into lines of at most width cells. InputError for a longer word."""
     parts = [""]
     for word in line.split(BLANK):

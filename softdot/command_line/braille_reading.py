@@ -1,4 +1,4 @@
-"""Arguments of softdot read."""
+"""The arguments of softdot read."""
 
 from typing import Any
 
@@ -24,11 +24,11 @@ READING_OPTIONS = (
     ("press-s", "S", "with --mode press: time to go down, and up, 0.2 by default"),
     ("hold-s", "S", "with --mode press: time between them, 0.2 by default"),
 )
-"""Name, unit and meaning of what a line is read under."""
+"""Name, unit and meaning of the conditions under which a line is read."""
 
 
 def add_read(commands: Any) -> None:
-    """softdot read."""
+    """Add the command softdot read."""
     read = commands.add_parser(
         "read",
         help="read a line of Braille with an array: voltages and back to text",

@@ -1,4 +1,4 @@
-"""Arguments of the commands on configurations: check, new, list and schema."""
+"""The arguments of the commands on configurations: check, new, list and schema."""
 
 from typing import Any
 
@@ -9,7 +9,7 @@ TEMPLATES = ("default", "slice", "dome", "circuit", "time-dependent")
 
 
 def add_check(commands: Any) -> None:
-    """softdot check."""
+    """Add the command softdot check."""
     check = commands.add_parser(
         "check",
         help="find all mistakes of a configuration, or what its run will cost",
@@ -24,7 +24,7 @@ def add_check(commands: Any) -> None:
 
 
 def add_new(commands: Any) -> None:
-    """softdot new."""
+    """Add the command softdot new."""
     new = commands.add_parser(
         "new",
         help="print a configuration to start from, with every key explained",
@@ -36,7 +36,7 @@ def add_new(commands: Any) -> None:
 
 
 def add_list(commands: Any) -> None:
-    """softdot list."""
+    """Add the command softdot list."""
     listing = commands.add_parser(
         "list",
         help="list built-in materials, Braille standards or mechanisms",
@@ -47,7 +47,7 @@ def add_list(commands: Any) -> None:
 
 
 def add_schema(commands: Any) -> None:
-    """softdot schema."""
+    """Add the command softdot schema."""
     schema = commands.add_parser(
         "schema",
         help="print the JSON Schema of the configuration",

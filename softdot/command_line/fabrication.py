@@ -1,4 +1,4 @@
-"""Arguments of the commands for a workshop: kit and plate."""
+"""The arguments of the commands for a workshop: kit and plate."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ from softdot.command_line.options import EXIT_STATUS, add_config, add_output, ad
 
 
 def add_kit(commands: Any) -> None:
-    """softdot kit."""
+    """Add the command softdot kit."""
     kit = commands.add_parser(
         "kit",
         help="write a fabrication kit: moulds, frame, cut files, build sheet",
@@ -19,7 +19,7 @@ def add_kit(commands: Any) -> None:
 
 
 def add_plate(commands: Any) -> None:
-    """softdot plate."""
+    """Add the command softdot plate."""
     plate = commands.add_parser(
         "plate",
         help="write a printable Braille test plate",

@@ -6,13 +6,13 @@ EXIT_STATUS = "Exit status: 0 good, 2 bad input, 3 a computation did not converg
 
 
 def add_config(command: argparse.ArgumentParser) -> None:
-    """CONFIG.toml, or the default design, and --set."""
+    """Add the argument CONFIG.toml, by default the default design, and the option --set."""
     command.add_argument("config", nargs="?", metavar="CONFIG.toml", help="default: the final design of the paper")
     add_set(command)
 
 
 def add_set(command: argparse.ArgumentParser) -> None:
-    """--set KEY=VALUE."""
+    """Add the option --set KEY=VALUE."""
     command.add_argument(
         "--set",
         action="append",
@@ -23,14 +23,14 @@ def add_set(command: argparse.ArgumentParser) -> None:
 
 
 def add_scheduler(command: argparse.ArgumentParser, of_what: str = "") -> None:
-    """--scheduler ADDRESS."""
+    """Add the option --scheduler ADDRESS. of_what : words behind "presses" in its help."""
     command.add_argument(
         "--scheduler", metavar="ADDRESS", help=f"presses{of_what} on this Dask cluster, such as tcp://host:8786"
     )
 
 
 def add_output(command: argparse.ArgumentParser) -> None:
-    """-o OUT, --json, and how much is told."""
+    """Add the options -o OUT and --json, and those for more and less output."""
     command.add_argument(
         "-o", "--output", required=True, metavar="OUT", help="folder to write; an earlier result is replaced"
     )

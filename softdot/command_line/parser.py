@@ -13,15 +13,15 @@ from softdot.console import BAD_INPUT, GOOD
 
 
 class _Parser(argparse.ArgumentParser):
-    """Says one sentence instead of the usage and a sentence."""
+    """A parser whose errors are one sentence, without the usage."""
 
     def error(self, message: str) -> NoReturn:
-        """Exit 2."""
+        """Print a sentence and exit with status 2."""
         self.exit(BAD_INPUT, f"{self.prog}: {message}; see {self.prog} --help\n")
 
 
 class _Version(argparse.Action):
-    """Looks the version up only when asked."""
+    """An action that looks the version up only when asked."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_args: Any) -> None:
         from softdot.version import installed_version
@@ -31,7 +31,7 @@ class _Version(argparse.Action):
 
 
 class _Completion(argparse.Action):
-    """Prints the completion that shtab makes of the parser."""
+    """An action that prints the completion which shtab makes of the parser."""
 
     def __call__(self, parser: argparse.ArgumentParser, _namespace: Any, values: Any, _option: Any = None) -> None:
         import shtab
@@ -41,7 +41,7 @@ class _Completion(argparse.Action):
 
 
 def parser() -> argparse.ArgumentParser:
-    """The whole command line."""
+    """The parser of the whole command line."""
     top = _Parser(
         prog="softdot",
         description="Design, simulate and fabricate a soft piezoelectric segment over a Braille dot.",

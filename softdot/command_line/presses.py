@@ -1,4 +1,4 @@
-"""Arguments of the commands that press: run, sweep, array, verify and studio."""
+"""The arguments of the commands that press: run, sweep, array, verify and studio."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ from softdot.command_line.options import EXIT_STATUS, add_config, add_output, ad
 
 
 def add_run(commands: Any) -> None:
-    """softdot run."""
+    """Add the command softdot run."""
     run = commands.add_parser(
         "run",
         help="build, mesh, press and export one segment",
@@ -25,7 +25,7 @@ def add_run(commands: Any) -> None:
 
 
 def add_sweep(commands: Any) -> None:
-    """softdot sweep."""
+    """Add the command softdot sweep."""
     sweep = commands.add_parser(
         "sweep",
         help="press many designs over any keys of the configuration",
@@ -40,7 +40,7 @@ def add_sweep(commands: Any) -> None:
 
 
 def add_array(commands: Any) -> None:
-    """softdot array."""
+    """Add the command softdot array."""
     array = commands.add_parser(
         "array",
         help="press several segments under shared layers: their crosstalk",
@@ -66,7 +66,7 @@ def add_array(commands: Any) -> None:
 
 
 def add_verify(commands: Any) -> None:
-    """softdot verify."""
+    """Add the command softdot verify."""
     verify = commands.add_parser(
         "verify",
         help="solve problems with known answers: is it right on this machine?",
@@ -82,7 +82,7 @@ def add_verify(commands: Any) -> None:
 
 
 def add_studio(commands: Any) -> None:
-    """softdot studio."""
+    """Add the command softdot studio."""
     studio = commands.add_parser(
         "studio",
         help="design a segment in the browser, on this machine",

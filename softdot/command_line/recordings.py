@@ -1,4 +1,4 @@
-"""Arguments of the commands on recordings: convert and diagnose."""
+"""The arguments of the commands on recordings: convert and diagnose."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ from softdot.command_line.options import EXIT_STATUS, add_output, add_scheduler
 
 
 def add_convert(commands: Any) -> None:
-    """softdot convert."""
+    """Add the command softdot convert."""
     convert = commands.add_parser(
         "convert",
         help="join logs of instruments into a recording",
@@ -33,7 +33,7 @@ def add_convert(commands: Any) -> None:
 
 
 def add_diagnose(commands: Any) -> None:
-    """softdot diagnose."""
+    """Add the command softdot diagnose."""
     diagnose = commands.add_parser(
         "diagnose",
         help="find where simulation and recordings differ, and which physics was left out",

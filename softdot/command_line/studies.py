@@ -1,4 +1,4 @@
-"""Arguments of the commands that show evidence: paper and prove."""
+"""The arguments of the commands that produce evidence: paper and prove."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ from softdot.command_line.options import EXIT_STATUS, add_output, add_scheduler
 
 
 def add_paper(commands: Any) -> None:
-    """softdot paper."""
+    """Add the command softdot paper."""
     paper = commands.add_parser(
         "paper",
         help="reproduce and examine every table, figure and number of the paper",
@@ -19,7 +19,7 @@ def add_paper(commands: Any) -> None:
 
 
 def add_prove(commands: Any) -> None:
-    """softdot prove."""
+    """Add the command softdot prove."""
     prove = commands.add_parser(
         "prove",
         help="count how often a diagnosis is right, with hidden effects from another code",

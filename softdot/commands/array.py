@@ -31,7 +31,9 @@ def command(chosen: Namespace) -> int:
 
 
 def short_text(summary: dict[str, Any], output: str) -> str:
-    """Crosstalk, what stands for a segment, and where to look, in a few lines."""
+    """The summary in a few lines: crosstalk, the lone segment that stands for one of the array, and the path of the
+    report.
+    """
     lines = [
         f"{len(summary['segments'])} segments, {summary['solver']['presses']} presses solved: largest crosstalk "
         f"{summary['largest_crosstalk_percent']:.3g} %"

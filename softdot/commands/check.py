@@ -25,7 +25,7 @@ def command(chosen: Namespace) -> int:
 
 
 def check_file(path: Path, settings: list[str]) -> dict[str, Any]:
-    """Mistakes, warnings and the expected cost of a configuration."""
+    """Mistakes, warnings and the expected cost of a configuration, as a table for JSON. InputError."""
     from softdot.case import Case
     from softdot.config.default_design import keys_from_default, with_default_design
     from softdot.config.loading import config_from, unused_material_warnings
@@ -48,7 +48,7 @@ def check_file(path: Path, settings: list[str]) -> dict[str, Any]:
 
 
 def short_text(summary: dict[str, Any]) -> str:
-    """What the run will cost, the warnings, and what came from the default design."""
+    """The answer in a few lines: expected cost, warnings, and keys that came from the default design."""
     cost = summary["expected"]
     lines = [
         f"no mistakes in '{summary['config']}'",

@@ -17,11 +17,11 @@ from softdot.log import warn
 
 
 def command(chosen: Namespace) -> int:
-    """Join chosen.logs into chosen.output by the words of chosen.rig. InputError."""
+    """Join chosen.logs into the recording chosen.output, which chosen.rig describes. InputError."""
     rig = read_text(Path(chosen.rig), f"--rig '{chosen.rig}'")
-    file = _only_run(rig, chosen.rig)
+    file = _file_of_only_run(rig, chosen.rig)
     logs = [NamedLog(Path(name), read_log(name)) for name in chosen.logs]
-    run = join_logs(logs, _named(chosen.column), [_seconds(text) for text in chosen.offset], chosen.align)
+    run = join_logs(logs, _columns_by_channel(chosen.column), [_seconds(text) for text in chosen.offset], chosen.align)
     write_recording(chosen.output, rig, {file: run.columns})
     warn([*run.warnings, *load_rig(chosen.output).recording.warnings])
     if not chosen.quiet:
@@ -29,8 +29,8 @@ def command(chosen: Namespace) -> int:
     return GOOD
 
 
-def _only_run(rig: str, name: str) -> str:
-    """The file of the only run. InputError for none, or several."""
+def _file_of_only_run(rig: str, name: str) -> str:
+    """The file of the only table [[runs]]. InputError where there is none, or several."""
     runs = parse_toml(rig, name).get("runs")
     if not isinstance(runs, list) or len(runs) != 1 or not isinstance(runs[0], dict):
         raise InputError(f"--rig '{name}': must hold one table [[runs]], of the run that these logs are of")
@@ -40,8 +40,8 @@ def _only_run(rig: str, name: str) -> str:
     return file
 
 
-def _named(texts: list[str]) -> dict[str, str]:
-    """Channel -> column of CHANNEL=COLUMN. InputError."""
+def _columns_by_channel(texts: list[str]) -> dict[str, str]:
+    """Channel -> column, of texts CHANNEL=COLUMN. InputError."""
     found: dict[str, str] = {}
     for text in texts:
         channel, _, column = (part.strip() for part in text.rpartition("="))
@@ -56,7 +56,7 @@ def _named(texts: list[str]) -> dict[str, str]:
 
 
 def _seconds(text: str) -> float:
-    """InputError for what is no finite number."""
+    """The number of seconds that a text states. InputError where it is no finite number."""
     if not re.fullmatch(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", text, re.ASCII):
         raise InputError(f"--offset '{text}': must be a number of seconds")
     return float(text)

@@ -33,5 +33,5 @@ def command(chosen: Namespace) -> int:
 
 
 def short_text(summary: dict[str, Any], output: str) -> str:
-    """The sentences of the verdict and where to look."""
+    """The sentences of the verdict, and the path of the report."""
     return "\n".join([*summary["summary"], f"{output}/report.html"])

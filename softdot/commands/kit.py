@@ -1,4 +1,4 @@
-"""softdot kit: what a workshop needs to make a segment, and what each tolerance does."""
+"""softdot kit: everything that a workshop needs to make a segment, and the effect of each tolerance."""
 
 from argparse import Namespace
 from pathlib import Path
@@ -7,7 +7,7 @@ from typing import Any
 from softdot.console import GOOD, NOT_CONVERGED, complain, only_the_summary_on_stdout, show
 from softdot.kit.folder import make_kit
 
-ROWS = 5
+SHOWN_TOLERANCES = 5
 
 
 def command(chosen: Namespace) -> int:
@@ -26,12 +26,12 @@ def command(chosen: Namespace) -> int:
 
 
 def short_text(summary: dict[str, Any], output: str) -> str:
-    """What there is to make, what matters most, and where to look."""
+    """The summary in a few lines: number of parts, the largest tolerances, and the path of the build sheet."""
     lines = [f"{len(summary['parts'])} parts to print, {len(summary['flat_patterns'])} to cut"]
     budget = summary["tolerance_budget"]
     if budget and summary["config"]["array"] is not None:
         lines.append(f"tolerances of {summary['tolerance_budget_of']}:")
-    for row in budget["rows"][:ROWS] if budget else []:
+    for row in budget["rows"][:SHOWN_TOLERANCES] if budget else []:
         change = f"{row['voltage_percent']:+.0f} % voltage, {row['force_percent']:+.0f} % force"
         lines.append(f"{row['label']} ±{row['plus_minus']:.3g} {row['unit']}: {change}")
     return "\n".join([*lines, f"{output}/kit.html"])

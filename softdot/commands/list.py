@@ -7,28 +7,28 @@ from typing import Any
 from softdot.console import GOOD
 from softdot.json_files import json_text
 
-ABOUT = ("model", "source", "confidence")
+ORIGIN_KEYS = ("model", "source", "confidence")
 
 
 def command(chosen: Namespace) -> int:
-    """Print what chosen.what names."""
+    """Print the list that chosen.what names; 0."""
     entries = LISTS[chosen.what]()
     if chosen.json:
         sys.stdout.write(json_text({"format": f"softdot-{chosen.what}/1", chosen.what: entries}))
     else:
-        print("\n".join(_lines(entry) for entry in entries))
+        print("\n".join(_entry_text(entry) for entry in entries))
     return GOOD
 
 
-def _lines(entry: dict[str, Any]) -> str:
-    """The name and what it is on one line, then one line per remark."""
+def _entry_text(entry: dict[str, Any]) -> str:
+    """The text of an entry: name and kind on one line, then one line per remark."""
     head = [entry["name"], entry["is"]]
-    values = ", ".join(f"{key} = {_short(value)}" for key, value in entry["values"].items())
+    values = ", ".join(f"{key} = {_value_text(value)}" for key, value in entry["values"].items())
     about = [f"    {key}: {entry[key]}" for key in ("components", "confidence", "source") if entry.get(key)]
     return "\n".join(["  ".join(head), *([f"    {values}"] if values else []), *about])
 
 
-def _short(value: Any) -> str:
+def _value_text(value: Any) -> str:
     return str(value) if isinstance(value, str) else json_text(value).replace("\n", "").replace("  ", "")
 
 
@@ -38,7 +38,7 @@ def _materials() -> list[dict[str, Any]]:
     return [
         {
             "name": name, "is": table["model"],
-            "values": {key: value for key, value in table.items() if key not in ABOUT},
+            "values": {key: value for key, value in table.items() if key not in ORIGIN_KEYS},
             "confidence": table["confidence"], "source": table["source"],
         }
         for name, table in library_tables().items()

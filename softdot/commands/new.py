@@ -16,7 +16,7 @@ from geometry.parameters import ActsWith
 from softdot.config.schema import config_schema
 from softdot.console import GOOD
 
-Json = dict[str, Any]
+JsonTable = dict[str, Any]
 
 UNITS = {
     "_N_per_mm3": "N/mm³",
@@ -41,21 +41,21 @@ UNITS = {
 """Ending of a key -> its unit; the first that fits counts."""
 
 
-def unit(key: str) -> str:
+def unit_of_key(key: str) -> str:
     """The unit that the ending of a key names, a dash for none."""
     return next((name for ending, name in UNITS.items() if key.endswith(ending)), "–")
 
 
-def allowed(value: Json) -> str:
-    """What the schema allows, in words."""
+def allowed_values(value: JsonTable) -> str:
+    """The values that the schema of a key allows, in words."""
     if "$ref" in value or isinstance(value.get("additionalProperties"), dict):
         return "a table"
     if "anyOf" in value:
-        return " or ".join(dict.fromkeys(allowed(one) for one in value["anyOf"] if one.get("type") != "null"))
+        return " or ".join(dict.fromkeys(allowed_values(one) for one in value["anyOf"] if one.get("type") != "null"))
     if "enum" in value or "const" in value:
-        return ", ".join(f"`{toml(one)}`" for one in value.get("enum", [value.get("const")]))
+        return ", ".join(f"`{toml_value(one)}`" for one in value.get("enum", [value.get("const")]))
     if value["type"] == "array":
-        return _allowed_list(value)
+        return _allowed_lists(value)
     words = {
         "number": "number",
         "integer": "whole number",
@@ -68,26 +68,26 @@ def allowed(value: Json) -> str:
     return " ".join([words[value["type"]], " and ".join(limits)]).strip()
 
 
-def _allowed_list(value: Json) -> str:
+def _allowed_lists(value: JsonTable) -> str:
     pieces = value.get("prefixItems")
     if pieces:
-        return f"list of {len(pieces)}: " + "; ".join(dict.fromkeys(allowed(piece) for piece in pieces))
+        return f"list of {len(pieces)}: " + "; ".join(dict.fromkeys(allowed_values(piece) for piece in pieces))
     if "$ref" in value["items"]:
         return "tables"
     least = ", at least one" if value.get("minItems") else ""
-    return f"list{least}, each: {allowed(value['items'])}"
+    return f"list{least}, each: {allowed_values(value['items'])}"
 
 
-def toml(value: Any) -> str:
+def toml_value(value: Any) -> str:
     """A value as TOML writes it on one line."""
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{key} = {toml(item)}" for key, item in value.items()) + " }"
+        return "{ " + ", ".join(f"{key} = {toml_value(item)}" for key, item in value.items()) + " }"
     if isinstance(value, list | tuple):
-        return "[" + ", ".join(toml(item) for item in value) + "]"
+        return "[" + ", ".join(toml_value(item) for item in value) + "]"
     return json.dumps(value, ensure_ascii=False)
 
 
-WIDTH = 110
+LINE_WIDTH = 110
 TABLES = {
     "": "Config", "segment": "Segment", "segment.effector": "Effector", "segment.medium1": "Medium",
     "segment.film": "Film", "[segment.film.electrodes]": "Electrode", "segment.medium2": "Medium",
@@ -96,9 +96,9 @@ TABLES = {
     "fabrication": "Fabrication", "fabrication.casting.my-rubber": "CastingNumbers",
 }  # fmt: skip
 """Table -> its definition in the schema; those in brackets may be repeated."""
-HARMLESS = {"mesh", "fabrication"}
-"""Empty, these say nothing, so their keys can be switched on one by one."""
-MATERIALS = """\
+HARMLESS_TABLES = {"mesh", "fabrication"}
+"""Tables that change nothing while they are empty, so that their keys can be switched on one by one."""
+MATERIALS_TEXT = """\
 # Materials of your own: softdot list materials shows the built-in ones and their keys. A table with the name of a
 # built-in material changes the constants that it states.
 # [materials.my-rubber]
@@ -109,19 +109,19 @@ MATERIALS = """\
 
 
 def command(chosen: Namespace) -> int:
-    """Print the template of chosen.template."""
+    """Print the configuration of chosen.template; 0."""
     sys.stdout.write(template_text(chosen.template))
     return GOOD
 
 
 def template_text(name: str) -> str:
-    """A whole configuration file."""
+    """The text of a whole configuration file made from a template."""
     from softdot.config.default_design import default_design
     from softdot.config.toml import parse_toml
 
     text = files("softdot.templates").joinpath(f"{name}.toml").read_text("utf-8")
     own = parse_toml(text, f"{name}.toml")
-    values = _merged(default_design(), own)
+    values = _merge_tables(default_design(), own)
     if values["dot"].keys() & {"radius_mm", "base_diameter_mm"}:
         del values["dot"]["standard"]
     schema = config_schema()
@@ -129,20 +129,21 @@ def template_text(name: str) -> str:
     head = [text.split("\n")[0], f"# Made by softdot new --template {name}; a key without # is stated, others show"]
     head[1] += " their default."
     parts = ["\n".join(head)]
-    parts += [_table(title, definitions[kind], _stated(values, title)) for title, kind in TABLES.items()]
-    return "\n\n".join([*parts, MATERIALS]) + "\n"
+    parts += [_table(title, definitions[kind], _stated_table(values, title)) for title, kind in TABLES.items()]
+    return "\n\n".join([*parts, MATERIALS_TEXT]) + "\n"
 
 
-def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
+def _merge_tables(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
+    """The tables of both, those above in place of those below."""
     merged = dict(below)
     for key, value in above.items():
         both = isinstance(value, dict) and isinstance(merged.get(key), dict)
-        merged[key] = _merged(merged[key], value) if both else value
+        merged[key] = _merge_tables(merged[key], value) if both else value
     return merged
 
 
-def _stated(values: Mapping[str, Any], title: str) -> Mapping[str, Any] | None:
-    """The values of a table, None where the template does not state it; of repeated ones the first."""
+def _stated_table(values: Mapping[str, Any], title: str) -> Mapping[str, Any] | None:
+    """The values of a table, None where the template does not state it; of repeated tables the first."""
     found: Any = values
     for part in title.strip("[]").split(".") if title else ():
         found = found.get(part)
@@ -151,50 +152,56 @@ def _stated(values: Mapping[str, Any], title: str) -> Mapping[str, Any] | None:
     return found[0] if isinstance(found, list) else found  # type: ignore[no-any-return]
 
 
-def _table(title: str, definition: Json, values: Mapping[str, Any] | None) -> str:
-    """The head of a table and its keys, all of it a comment where values is None."""
+def _table(title: str, definition: JsonTable, values: Mapping[str, Any] | None) -> str:
+    """The text of a table, its head and its keys; all of it a comment where values is None."""
     lines = [*_comment(definition["description"].strip().replace("\n", " "))] if title else []
     if title:
-        lines.append(f"[{title}]" if values is not None or title in HARMLESS else f"# [{title}]")
+        lines.append(f"[{title}]" if values is not None or title in HARMLESS_TABLES else f"# [{title}]")
     for key, value in definition["properties"].items():
         if _is_table(value):
             continue
-        lines += _comment(_about(key, value, key in definition.get("required", [])))
+        lines += _comment(_key_remark(key, value, key in definition.get("required", [])))
         stated = values is not None and key in values
-        shown = toml(values[key]) if stated and values else toml(value["default"]) if _has_default(value) else "..."
+        shown = (
+            toml_value(values[key])
+            if stated and values
+            else toml_value(value["default"])
+            if _has_default(value)
+            else "..."
+        )
         lines.append(f"{'' if stated else '# '}{key} = {shown}")
     return "\n".join(lines)
 
 
-def _about(key: str, value: Json, required: bool) -> str:
-    """Meaning, unit, what is allowed, default."""
-    measured = unit(key)
+def _key_remark(key: str, value: JsonTable, required: bool) -> str:
+    """The meaning of a key, its unit, allowed values and default."""
+    measured = unit_of_key(key)
     said = [value.get("description", value["title"].lower()), f"unit {measured}" if measured != "–" else ""]
-    said.append(f"allowed: {allowed(value)}".replace("`", ""))
-    default = f"default {toml(value['default'])}" if _has_default(value) else "may be left out"
+    said.append(f"allowed: {allowed_values(value)}".replace("`", ""))
+    default = f"default {toml_value(value['default'])}" if _has_default(value) else "may be left out"
     said.append("required" if required else default)
-    said += [acting(value)] if acting(value) else []
+    said += [acting_condition(value)] if acting_condition(value) else []
     return "; ".join(part for part in said if part)
 
 
-def acting(value: Json) -> str:
-    """Beside which other keys a key acts, in words, nothing where it always does."""
+def acting_condition(value: JsonTable) -> str:
+    """The condition under which a key acts, in words; "" where it always does."""
     said = []
     for tags in value.get("x-acts-with", []):
-        wanted: Json = {key: tuple(one) if isinstance(one, list) else one for key, one in tags.items()}
+        wanted: JsonTable = {key: tuple(one) if isinstance(one, list) else one for key, one in tags.items()}
         said.append(ActsWith(**wanted).words)
     return f"acts only {' and '.join(said)}" if said else ""
 
 
-def _has_default(value: Json) -> bool:
+def _has_default(value: JsonTable) -> bool:
     return value.get("default") is not None
 
 
-def _is_table(value: Json) -> bool:
+def _is_table(value: JsonTable) -> bool:
     """Whether a key has tables of its own."""
     inner = [value, *value.get("anyOf", []), value.get("items", {})]
     return any("$ref" in one for one in inner) or "$ref" in json.dumps(value.get("additionalProperties", {}))
 
 
 def _comment(text: str) -> list[str]:
-    return textwrap.wrap(text, WIDTH, initial_indent="# ", subsequent_indent="#   ")
+    return textwrap.wrap(text, LINE_WIDTH, initial_indent="# ", subsequent_indent="#   ")

@@ -1,4 +1,4 @@
-"""softdot paper: the whole study, its parts one after the other, in one page that opens offline."""
+"""softdot paper: the whole study, part after part, in one page that opens offline."""
 
 import csv
 from argparse import Namespace
@@ -36,34 +36,34 @@ def command(chosen: Namespace) -> int:
 
 
 def short_text(summary: dict[str, Any], output: str) -> str:
-    """The findings and where to look."""
+    """The findings, and the path of the page."""
     return "\n".join([*(f"- {finding}" for finding in summary["findings"]), f"{output}/paper.html"])
 
 
 PAPER = Product("softdot-paper/1", "paper.json", frozenset({"paper.json", "paper.html", "figures", "tables"}))
-PARTS = ("analytical", "calibration", "segments", "beyond")
+STUDY_PARTS = ("analytical", "calibration", "segments", "beyond")
 """Packages of softdot.studies.paper, in the order of the page; each has a module and in it a function `section`."""
 
 
 def run_paper(out: Path, progress: Progress | None = None, scheduler: str | None = None) -> dict[str, Any]:
-    """Solve what is not remembered, write the study into the folder out and return the content of paper.json.
+    """Solve what is not stored, write the study into the folder out and return the content of paper.json.
 
-    Presses are done by processes of this computer, or on the Dask cluster of a scheduler (tcp://HOST:PORT).
-    InputError before any work when out cannot be written; NotSolvedError when a press gives no result. In both
-    cases nothing is written, and what was solved is remembered.
+    Presses are done by processes of this computer, or on the Dask cluster of a scheduler (tcp://HOST:PORT). InputError
+    before any work when out cannot be written; NotSolvedError when a press gives no result. In both cases nothing is
+    written, and what was solved is stored.
     """
     with executor_for(scheduler) as executor, staged_folder(out, PAPER) as folder:
         (folder / "figures").mkdir()
-        sections = [_part(name)(progress or Logged(), folder, executor) for name in PARTS]
-        summary: dict[str, Any] = plain(content(sections))
+        sections = [_part(name)(progress or Logged(), folder, executor) for name in STUDY_PARTS]
+        summary: dict[str, Any] = plain(paper_content(sections))
         _write_tables(all_tables(sections), folder / "tables")
         write_report(sections, folder / "paper.html")
         write_json(folder / PAPER.summary, summary)
     return summary
 
 
-def content(sections: Sequence[Section]) -> dict[str, Any]:
-    """What paper.json holds."""
+def paper_content(sections: Sequence[Section]) -> dict[str, Any]:
+    """The content of paper.json."""
     return {
         "format": PAPER.format,
         "softdot_version": installed_version(),
@@ -86,13 +86,14 @@ def all_tables(sections: Sequence[Section]) -> list[PaperTable]:
 
 
 def _part(name: str) -> Callable[[Progress, Path, Executor], Section]:
+    """The function that makes a part of the study."""
     part = import_module(f"softdot.studies.paper.{name}.section")
     section: Callable[[Progress, Path, Executor], Section] = part.section
     return section
 
 
 def _write_tables(tables: Sequence[PaperTable], folder: Path) -> None:
-    """One CSV a table."""
+    """Write each table as a CSV file."""
     folder.mkdir()
     for table in tables:
         with (folder / f"{table.name}.csv").open("w", newline="", encoding="utf-8") as file:

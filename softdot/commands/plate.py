@@ -12,7 +12,7 @@ from softdot.plate.options import PlateRequest
 
 
 def command(chosen: Namespace) -> int:
-    """Write the plate that is asked for into chosen.output. InputError."""
+    """Write the requested plate into chosen.output. InputError."""
     from softdot.progress import progress_of
 
     request = request_of(chosen)
@@ -23,7 +23,7 @@ def command(chosen: Namespace) -> int:
 
 
 def request_of(chosen: Namespace) -> PlateRequest:
-    """The request of the command line. InputError for a list of heights that is none."""
+    """The request that the command line states. InputError for a list of heights with anything but numbers."""
     given = {name: value for name in QUANTITIES if (value := getattr(chosen, name)) is not None}
     return PlateRequest(
         standard=chosen.standard,
@@ -40,7 +40,7 @@ def request_of(chosen: Namespace) -> PlateRequest:
 
 
 def short_text(summary: dict[str, Any], output: str) -> str:
-    """Cells, size, advice and where to look, in a few lines."""
+    """The summary in a few lines: cells, size, advice on printers, and the path of the solid."""
     size = " x ".join(f"{value:.4g}" for value in summary["size_mm"])
     advice = [f"{answer['profile']}: {answer['advice']}" for answer in summary["printability"]]
     return "\n".join([*summary.get("cells", []), f"{size} mm", *advice, f"{output}/plate.stl"])

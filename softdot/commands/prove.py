@@ -10,7 +10,9 @@ from softdot.console import GOOD, INTERRUPTED, NOT_CONVERGED, complain, only_the
 
 
 def command(chosen: Namespace) -> int:
-    """Prove chosen.cases cases into chosen.output; 0, or 3 when not one was scored, or 130. InputError."""
+    """Prove chosen.cases cases into chosen.output; 0, 3 when not one was scored, or 130 when interrupted.
+    InputError.
+    """
     if find_spec("skfem") is None:
         raise InputError("prove needs scikit-fem, the other finite-element code: pip install 'softdot[prove]'")
     from softdot.studies.proof.proof_folder import CASES
@@ -41,7 +43,7 @@ def command(chosen: Namespace) -> int:
 
 
 def short_text(summary: dict[str, Any], output: str) -> str:
-    """How the cases ended and the first rates."""
+    """The summary in a few lines: how the cases ended, the first rates, and the path of the table."""
     from softdot.studies.proof.proof_page import HEAD, percent
 
     ended = ", ".join(f"{count} {status}" for status, count in summary["ended"].items())

@@ -1,4 +1,4 @@
-"""softdot read: a line of Braille under an array, its voltages, and what decoders make of them."""
+"""softdot read: a line of Braille under an array, its voltages, and the text that decoders read from them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 READING = Product(
     "softdot-reading/1", "reading.json", frozenset({"reading.json", "signals.npz", "signals.png", "report.html"})
 )
-USUAL_DECODERS = "model,threshold,learned"
+DEFAULT_DECODERS = "model,threshold,learned"
 
 
 def run_read(
@@ -32,13 +32,13 @@ def run_read(
     conditions: ReadingConditions | None = None,
     config: Config | None = None,
     table: str | None = None,
-    decoders: str = USUAL_DECODERS,
+    decoders: str = DEFAULT_DECODERS,
     recording: Path | None = None,
     progress: Progress | None = None,
 ) -> dict[str, Any]:
-    """Read a text with the kernel of a folder into the folder out and return what reading.json says.
+    """Read a text with the kernel of a folder into the folder out and return the content of reading.json.
 
-    text : None or empty only with a recording, whose text nobody knows. table : of liblouis, None for plain English.
+    text : None or empty only with a recording of an unknown text. table : of liblouis, None for plain English.
     InputError, before anything is written, for whatever cannot be read.
     """
     import numpy as np
@@ -94,14 +94,14 @@ def command(chosen: Namespace) -> int:
     from softdot.reading.conditions import refuse_idle
 
     if chosen.design is not None:
-        return _design(chosen)
+        return _search_designs(chosen)
     if chosen.kernel is None:
         raise InputError("--kernel is missing: softdot array --kernel writes the folder that a line is read with")
     config = load_config(chosen.config, chosen.set) if chosen.config is not None or chosen.set else None
     if chosen.study or chosen.conditions is not None:
-        return _study(chosen, config)
+        return _study_conditions(chosen, config)
     recording = None if chosen.recording is None else Path(chosen.recording)
-    refuse_idle(conditions_of(chosen), _stated(chosen), recording is not None)
+    refuse_idle(conditions_of(chosen), _stated_conditions(chosen), recording is not None)
     with only_the_summary_on_stdout(), progress_of(chosen) as progress:
         summary = run_read(
             chosen.text, Path(chosen.kernel), Path(chosen.output), conditions_of(chosen), config, chosen.table,
@@ -111,8 +111,8 @@ def command(chosen: Namespace) -> int:
     return GOOD
 
 
-def _study(chosen: Namespace, config: Config | None) -> int:
-    """Study into chosen.output; 130 when it was interrupted. InputError."""
+def _study_conditions(chosen: Namespace, config: Config | None) -> int:
+    """Study how far conditions may go, into chosen.output; 0, or 130 when interrupted. InputError."""
     from dataclasses import replace
 
     from foundation.errors import InputError
@@ -128,7 +128,7 @@ def _study(chosen: Namespace, config: Config | None) -> int:
     study = usual if chosen.conditions is None else load_study(Path(chosen.conditions), kernel, base)
     if chosen.text:
         study = replace(study, text=chosen.text, table=chosen.table)
-    summary = _resumable(
+    summary = _run_resumable(
         chosen,
         FOLDER,
         lambda progress: run_reading_study(
@@ -141,8 +141,8 @@ def _study(chosen: Namespace, config: Config | None) -> int:
     return GOOD
 
 
-def _resumable(chosen: Namespace, folder: str, work: Callable[[Progress], dict[str, Any]]) -> dict[str, Any] | None:
-    """What work returns; None where it was interrupted, after a sentence that says what is kept in folder."""
+def _run_resumable(chosen: Namespace, folder: str, work: Callable[[Progress], dict[str, Any]]) -> dict[str, Any] | None:
+    """The result of work; None where it was interrupted, after a sentence that says what is kept in folder."""
     from softdot.progress import progress_of
 
     try:
@@ -155,8 +155,8 @@ def _resumable(chosen: Namespace, folder: str, work: Callable[[Progress], dict[s
         return None
 
 
-def _design(chosen: Namespace) -> int:
-    """Search into chosen.output; 3 when no design could be solved, 130 when it was interrupted. InputError."""
+def _search_designs(chosen: Namespace) -> int:
+    """Search for a design into chosen.output; 0, 3 when no design could be solved, 130 when interrupted. InputError."""
     from foundation.errors import InputError
     from softdot.reading.decoders import named_decoders
     from softdot.reading.designs.design_file import load_request
@@ -165,13 +165,13 @@ def _design(chosen: Namespace) -> int:
 
     for name in ("kernel", "config", "recording", "conditions"):
         if getattr(chosen, name) is not None:
-            raise InputError(f"--design: makes its own kernels and voltages; leave {_called(name)} out")
+            raise InputError(f"--design: makes its own kernels and voltages; leave {_argument_name(name)} out")
     if chosen.study:
         raise InputError("--design: is another search than --study; give one of them")
     decoder = named_decoders(chosen.decoders)[0]
     request = load_request(Path(chosen.design), chosen.set)
     asked = AskedReading(chosen.text or USUAL_TEXT, chosen.table, decoder, conditions_of(chosen))
-    summary = _resumable(
+    summary = _run_resumable(
         chosen,
         FOLDER,
         lambda progress: run_designs(request, asked, Path(chosen.output), chosen.workers, chosen.scheduler, progress),
@@ -185,19 +185,19 @@ def _design(chosen: Namespace) -> int:
     return NOT_CONVERGED
 
 
-def _called(name: str) -> str:
+def _argument_name(name: str) -> str:
     return "CONFIG.toml" if name == "config" else f"--{name}"
 
 
 def conditions_of(chosen: Namespace) -> ReadingConditions:
-    """The conditions of the command line; what it does not say has its default. InputError."""
+    """The conditions of the command line, those that it does not state with their defaults. InputError."""
     from softdot.reading.conditions import ReadingConditions
 
-    return ReadingConditions(**_stated(chosen))
+    return ReadingConditions(**_stated_conditions(chosen))
 
 
-def _stated(chosen: Namespace) -> dict[str, Any]:
-    """The conditions that the command line states."""
+def _stated_conditions(chosen: Namespace) -> dict[str, Any]:
+    """The conditions that the command line states, by name."""
     from dataclasses import fields
 
     from softdot.reading.conditions import ReadingConditions
@@ -207,7 +207,7 @@ def _stated(chosen: Namespace) -> dict[str, Any]:
 
 
 def short_text(summary: dict[str, Any], output: str) -> str:
-    """What was read, how well and how fast, in a few lines."""
+    """The reading in a few lines: text, rates, speed, and the path of the page."""
     lines = [summary["text_read"]]
     for name, own in summary["decoders"].items():
         if "character_accuracy" in own:
@@ -224,7 +224,7 @@ def short_text(summary: dict[str, Any], output: str) -> str:
 
 
 def _limits_text(summary: dict[str, Any], output: str) -> str:
-    """How far each condition may go."""
+    """The limit of each condition, a line each."""
     lines = []
     for name, limit in summary["limits"].items():
         if limit["read_up_to"] is None:
@@ -240,7 +240,7 @@ def _limits_text(summary: dict[str, Any], output: str) -> str:
 
 
 def _designs_text(summary: dict[str, Any], output: str) -> str:
-    """Which design reads with the least force, and the compared ones."""
+    """The design that reads with the least force, and the compared ones, a line each."""
     lines = [f"at least {100 * summary['accuracy']:g} % of {summary['characters']} characters:"]
     for one in summary["designs"]:
         if one["best"] or one["compared"]:

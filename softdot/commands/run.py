@@ -44,32 +44,35 @@ def command(chosen: Namespace) -> int:
 
 
 def _try_to_draw() -> None:
-    """Half a second, in which another process tries; run_case tells what comes of it."""
+    """Test whether pictures can be drawn, for half a second beside other work; run_case reports a failure."""
     from export.rendering import ensure_rendering
 
     with suppress(InputError):
         ensure_rendering()
 
 
-PARTS = {1: "a half", 2: "a quarter"}
+PART_WORDS = {1: "a half", 2: "a quarter"}
+"""Number of planes of symmetry -> the part that is solved, in words."""
 
 
-def _halved(planes: Sequence[str]) -> list[str]:
-    """Told where a part was solved."""
+def _symmetry_lines(planes: Sequence[str]) -> list[str]:
+    """A line that names the planes of symmetry, where only a part was solved."""
     if not planes:
         return []
-    return [f"symmetric about {' and '.join(planes)}: solved on {PARTS[len(planes)]}, all results are of the whole"]
+    return [
+        f"symmetric about {' and '.join(planes)}: solved on {PART_WORDS[len(planes)]}, all results are of the whole"
+    ]
 
 
 def short_text(summary: dict[str, Any], output: str) -> str:
-    """The deepest step and where to look, in a few lines."""
+    """The deepest step in a few lines, and the path of the report."""
     from export.report import plus_minus
     from softdot.config.default_design import default_design_line
 
     lines = []
     if summary.get("indentation_mm"):
         force, voltage = (plus_minus(summary, name) for name in ("force_percent", "voltage_percent"))
-        lines += _halved(summary["mesh"]["symmetry_planes"])
+        lines += _symmetry_lines(summary["mesh"]["symmetry_planes"])
         lines.append(
             f"{summary['indentation_mm'][-1]:.3g} mm: force {summary['reaction_force_N'][-1]:.4g} N{force}, "
             f"charge {summary['film_charge_pC'][-1]:.4g} pC, "

@@ -53,7 +53,7 @@ def command(chosen: Namespace) -> int:
 
 
 def start_text(config: str | None) -> str:
-    """The text of a file, or of the default design."""
+    """The text of a configuration file, or of the default design. InputError."""
     if config is None:
         return files("softdot.config").joinpath("default.toml").read_text("utf-8")
     return read_text(Path(config), f"configuration '{config}'")

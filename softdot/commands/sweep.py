@@ -17,7 +17,9 @@ from softdot.sweeps.run import run_sweep
 
 
 def command(chosen: Namespace) -> int:
-    """Sweep chosen.space into chosen.output; 0, or 3 when not one point could be solved, or 130. InputError."""
+    """Sweep chosen.space into chosen.output; 0, 3 when not one point could be solved, 130 when interrupted.
+    InputError.
+    """
     from softdot.sweeps.folder import POINTS
     from softdot.sweeps.space import load_space
 
@@ -39,7 +41,7 @@ def command(chosen: Namespace) -> int:
 
 
 def short_text(summary: dict[str, Any], output: str) -> str:
-    """How the points ended, how fast, and where the table is."""
+    """The summary in a few lines: how the points ended, how fast, and the path of the page."""
     ended = ", ".join(f"{count} {status}" for status, count in summary["ended"].items() if count)
     lines = [f"{summary['points']} points: {ended}"]
     if summary["solved_now"]:

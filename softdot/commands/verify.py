@@ -21,7 +21,7 @@ HEADS = ("problem", "reference", "value", "unit", "deviation", "bound", "")
 
 
 def command(chosen: Namespace) -> int:
-    """Run the problems that are asked for into chosen.output; 0, or 3 where one fails. InputError."""
+    """Run the chosen problems into chosen.output; 0, or 3 where one fails. InputError."""
     problems = chosen_problems(chosen.only)
     with only_the_summary_on_stdout(), progress_of(chosen) as progress:
         summary = run_verification(problems, Path(chosen.output), progress)
@@ -39,7 +39,7 @@ def command(chosen: Namespace) -> int:
 
 
 def run_verification(problems: Sequence[Problem], out: Path, progress: Progress | None = None) -> dict[str, Any]:
-    """Solve problems, write verify.json and verify.html into the folder out and return what the former holds.
+    """Solve problems, write verify.json and verify.html into the folder out and return the content of verify.json.
 
     InputError before any work when out cannot be written.
     """
@@ -49,7 +49,7 @@ def run_verification(problems: Sequence[Problem], out: Path, progress: Progress 
         outcomes = []
         for number, problem in enumerate(problems, start=1):
             outcomes.append(problem.outcome())
-            told.step(number, len(problems), f"{problem.name} {verdict(outcomes[-1])}")
+            told.step(number, len(problems), f"{problem.name} {verdict_word(outcomes[-1])}")
         summary: dict[str, Any] = plain(
             {
                 "format": VERIFY.format,
@@ -65,23 +65,23 @@ def run_verification(problems: Sequence[Problem], out: Path, progress: Progress 
     return summary
 
 
-def verdict(outcome: dict[str, Any]) -> str:
-    """In one word."""
+def verdict_word(outcome: dict[str, Any]) -> str:
+    """The verdict on an outcome in one word: passed or failed."""
     return "passed" if outcome["passed"] else "failed"
 
 
-def cells(outcome: dict[str, Any]) -> tuple[str, ...]:
-    """A row of the table, as HEADS name it."""
+def table_row(outcome: dict[str, Any]) -> tuple[str, ...]:
+    """The texts of one row of the table, in the order of HEADS."""
     deviation = "no solution" if outcome["deviation_percent"] is None else f"{outcome['deviation_percent']:+.2g} %"
     value = "-" if outcome["value"] is None else f"{outcome['value']:.6g}"
     bound = f"{outcome['bound_percent']:g} %"
     unit = "" if outcome["unit"] == "1" else outcome["unit"]
-    return outcome["name"], f"{outcome['reference']:.6g}", value, unit, deviation, bound, verdict(outcome)
+    return outcome["name"], f"{outcome['reference']:.6g}", value, unit, deviation, bound, verdict_word(outcome)
 
 
 def _print_table(outcomes: list[dict[str, Any]]) -> None:
-    """In colour on a terminal; in a pipe as plain columns."""
-    rows = [cells(outcome) for outcome in outcomes]
+    """Print a row for each outcome, in colour on a terminal, in a pipe as plain columns."""
+    rows = [table_row(outcome) for outcome in outcomes]
     if not sys.stdout.isatty():
         widths = [max(len(row[column]) for row in [HEADS, *rows]) for column in range(len(HEADS))]
         for row in [HEADS, *rows]:
@@ -98,6 +98,6 @@ def _print_table(outcomes: list[dict[str, Any]]) -> None:
 
 def _write_page(summary: dict[str, Any], path: Path) -> None:
     environment = page_environment(Path(__file__).parent)
-    rows = [(outcome, cells(outcome)) for outcome in summary["problems"]]
+    rows = [(outcome, table_row(outcome)) for outcome in summary["problems"]]
     page = environment.get_template("verify.html").render(summary=summary, rows=rows)
     path.write_text(page, "utf-8")

@@ -12,7 +12,7 @@ from softdot.config.schema import Config
 from solve.mechanisms import MECHANISMS
 
 
-def narrowed(engine: Engine, without: Sequence[str]) -> Engine:
+def without_mechanisms(engine: Engine, without: Sequence[str]) -> Engine:
     """The engine without the candidates of some mechanisms. InputError for a name that no mechanism has."""
     for name in without:
         if name not in MECHANISMS:
@@ -21,9 +21,9 @@ def narrowed(engine: Engine, without: Sequence[str]) -> Engine:
 
 
 def engine_for(rig: Rig, report: Report, executor: Executor = HERE) -> Engine:
-    """The engine for what rig.toml describes. InputError; NoEquilibriumError where its baseline has none."""
+    """The engine of the described rig. InputError; NoEquilibriumError where its baseline has none."""
     if rig.config is not None:
-        return _of_segment(rig, rig.config, report, executor)
+        return _segment_engine(rig, rig.config, report, executor)
     if rig.recording.specimen is not None:
         from diagnose.engines.coupon.engine import coupon_engine
 
@@ -33,7 +33,7 @@ def engine_for(rig: Rig, report: Report, executor: Executor = HERE) -> Engine:
     return proportional_engine(rig.recording, report)
 
 
-def _of_segment(rig: Rig, config: Config, report: Report, executor: Executor) -> Engine:
+def _segment_engine(rig: Rig, config: Config, report: Report, executor: Executor) -> Engine:
     from diagnose.engines.segment.engine import segment_engine
     from softdot.config.model import model_of
 

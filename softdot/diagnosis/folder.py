@@ -25,7 +25,7 @@ from foundation.errors import InputError
 from foundation.executor import Executor
 from foundation.progress import Report
 from softdot.config.rig import Rig, load_rig
-from softdot.diagnosis.engine import engine_for, narrowed
+from softdot.diagnosis.engine import engine_for, without_mechanisms
 from softdot.executors import executor_for
 from softdot.json_files import plain, write_json
 from softdot.output import Product, staged_folder
@@ -37,16 +37,17 @@ DIAGNOSIS = Product(
     "verdict.json",
     frozenset({"verdict.json", "report.html", "plots", "improved.toml", *map(waveform_file, range(MOST_PRESSES))}),
 )
-UNCHECKED = "The result was not checked with the full 3D model, because --fast-model-only was given."
+UNCHECKED_SENTENCE = "The result was not checked with the full 3D model, because --fast-model-only was given."
 FULL_MODEL_S = 240.0  # for presses by the full model, of the ten minutes that a first diagnosis may take
 
 
 @dataclass(frozen=True)
 class Options:
-    """full_model_s : for runs by the full model; None: for every run, however long. 0 : for none.
+    """The options of a diagnosis.
 
-    seed : of everything random; None: that of rig.toml. without : mechanisms that are no candidates.
-    hold_out : parts of labels; runs whose label has one of them only score what the others named.
+    full_model_s : seconds for runs by the full model; None: for every run, however long it takes; 0: for none. seed :
+    of everything random; None: that of rig.toml. without : mechanisms that are no candidates. hold_out : parts of
+    labels; runs whose label has one of them only score the result of the others.
     """
 
     full_model_s: float | None = FULL_MODEL_S
@@ -56,8 +57,10 @@ class Options:
 
 
 @dataclass
-class Proof:
-    """Runs pressed again by the full model. failure : why one has no equilibrium. warnings : why one is missing."""
+class FullModelRuns:
+    """Runs pressed again by the full model. failure : reason where one has no equilibrium. warnings : reasons where one
+    is missing.
+    """
 
     runs: list[Resimulation] = field(default_factory=list)
     failure: str | None = None
@@ -81,8 +84,8 @@ def run_diagnosis(
     check_cache_folder()
     rig = load_rig(folder)
     _refuse_what_sampling_misses(rig)
-    rig = replace(rig, recording=thin_recording(rig.recording))
-    held_out(rig.recording, options.hold_out)
+    rig = replace(rig, recording=thinned(rig.recording))
+    held_out_runs(rig.recording, options.hold_out)
     noise_models(rig.recording)  # refuses a channel without known noise before any press
     with executor_for(scheduler) as executor, staged_folder(out, DIAGNOSIS) as staged:
         summary: dict[str, Any] = plain(_fill(rig, options, progress, staged, executor))
@@ -100,25 +103,25 @@ def _refuse_what_sampling_misses(rig: Rig) -> None:
 
 
 def _fill(rig: Rig, options: Options, progress: Progress, folder: Path, executor: Executor) -> dict[str, Any]:
-    """Everything but verdict.json; returns the verdict."""
+    """Make everything but verdict.json, and return its content."""
     from diagnose.inference.diagnose import diagnose
     from diagnose.inference.held_runs import diagnose_and_score
     from softdot.diagnosis.report import write_evidence
     from softdot.version import installed_version
 
-    report = _reporting(progress)
+    report = _report_to(progress)
     seed = rig.bench.seed if options.seed is None else options.seed
     progress.stage("model")
-    engine = narrowed(engine_for(rig, report, executor), options.without)
+    engine = without_mechanisms(engine_for(rig, report, executor), options.without)
     progress.stage("compare")
-    held = held_out(rig.recording, options.hold_out)
+    held = held_out_runs(rig.recording, options.hold_out)
     if held:
         findings = diagnose_and_score(rig.recording, engine, held, seed, report)
     else:
         findings = diagnose(rig.recording, engine, seed, report)
     named_on = select_runs(rig.recording, other_runs(rig.recording, held))
     progress.stage("check with the full model")
-    proof = _proof(rig, engine, findings, report, options.full_model_s)
+    proof = _full_model_runs(rig, engine, findings, report, options.full_model_s)
     progress.stage("plan")
     following = next_presses(rig.recording, engine, findings)
     progress.stage("write")
@@ -133,8 +136,8 @@ def _fill(rig: Rig, options: Options, progress: Progress, folder: Path, executor
     return summary
 
 
-def held_out(recording: Recording, parts: Sequence[str]) -> list[int]:
-    """Numbers of the runs whose label has one of these parts. InputError for a part that none has, or all."""
+def held_out_runs(recording: Recording, parts: Sequence[str]) -> list[int]:
+    """Numbers of the runs whose label contains one of these parts. InputError for a part that none has, or all."""
     labels = [run.label for run in recording.runs]
     for part in parts:
         if not any(part in label for label in labels):
@@ -145,11 +148,13 @@ def held_out(recording: Recording, parts: Sequence[str]) -> list[int]:
     return held
 
 
-def _proof(rig: Rig, engine: Engine, findings: Findings, report: Report, limit_s: float | None) -> Proof:
-    """As many runs by the full model as the time allows."""
-    proof = Proof()
+def _full_model_runs(
+    rig: Rig, engine: Engine, findings: Findings, report: Report, limit_s: float | None
+) -> FullModelRuns:
+    """Press as many runs by the full model as the time allows."""
+    proof = FullModelRuns()
     if limit_s == 0.0:
-        proof.warnings += [UNCHECKED] if findings.best is not None else []
+        proof.warnings += [UNCHECKED_SENTENCE] if findings.best is not None else []
         return proof
     try:
         for run in resimulate(rig.recording, engine, findings, report, limit_s):
@@ -173,8 +178,8 @@ def _write_files(rig: Rig, engine: Engine, findings: Findings, following: Sequen
         np.savetxt(folder / waveform_file(number), columns, "%.9g", ",", header=header, comments="")
 
 
-def _reporting(progress: Progress) -> Report:
-    """Pass on what long work says."""
+def _report_to(progress: Progress) -> Report:
+    """A function that passes the progress of long work on."""
 
     def report(what: str, done: int, count: int) -> None:
         progress.step(done, count, what)

@@ -1,4 +1,4 @@
-"""improved.toml: the configuration of the user with what the recordings say was left out."""
+"""improved.toml: the configuration of the user with the physics that the recordings show to be missing."""
 
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
@@ -17,15 +17,15 @@ from diagnose.verdict.names import model_words
 from diagnose.verdict.resimulation import switched_on
 from softdot.config.rig import RIG_FILE, RIG_KEYS, Rig
 
-WITH = "Your {} with what the recordings say was left out: {}."
-UNCHANGED = "Your {} unchanged: the diagnosis named nothing that was left out."
-EXAMPLE = (
+IMPROVED_HEADING = "Your {} with what the recordings say was left out: {}."
+UNCHANGED_HEADING = "Your {} unchanged: the diagnosis named nothing that was left out."
+COUPON_HEADING = (
     "The material '{}' as its coupon says: {}. It is in medium 2 of the default segment; copy it where you need it."
 )
 
 
 def improved_text(rig: Rig, engine: Engine, findings: Findings) -> str | None:
-    """The configuration as TOML, comments kept; None for a coupon that teaches nothing and for an unknown geometry.
+    """The improved configuration as TOML, comments kept; None for a coupon without a result and an unknown geometry.
 
     Without a [press] of its own it presses like the deepest press of the recording.
     """
@@ -47,9 +47,9 @@ def _segment(rig: Rig, findings: Findings) -> tuple[tomlkit.TOMLDocument, str]:
         document.add(tomlkit.nl())
         document["press"] = _press(deepest.run.drive, deepest.shape)
     if findings.best is None:
-        return document, UNCHANGED.format(RIG_FILE)
-    _append(document, [setting_mechanism(setting).model_dump(mode="json") for setting in findings.best.settings])
-    return document, WITH.format(RIG_FILE, model_words(findings.best))
+        return document, UNCHANGED_HEADING.format(RIG_FILE)
+    _append(document, [switched_on(setting).model_dump(mode="json") for setting in findings.best.settings])
+    return document, IMPROVED_HEADING.format(RIG_FILE, model_words(findings.best))
 
 
 def _coupon(engine: CouponEngine, best: FittedModel) -> tuple[tomlkit.TOMLDocument, str]:
@@ -59,13 +59,13 @@ def _coupon(engine: CouponEngine, best: FittedModel) -> tuple[tomlkit.TOMLDocume
     found = improved_material(engine, [*best.settings, *constants], layer)
     document = tomlkit.parse(files("softdot.config").joinpath("default.toml").read_text("utf-8"))
     document["segment"][layer]["material"] = found.name
-    document["materials"] = {found.name: _rounded(found.table, 6)}
+    document["materials"] = {found.name: _round_floats(found.table, 6)}
     _append(document, found.mechanisms)
-    return document, EXAMPLE.format(found.name, model_words(best))
+    return document, COUPON_HEADING.format(found.name, model_words(best))
 
 
 def _append(document: tomlkit.TOMLDocument, mechanisms: Sequence[Mapping[str, Any]]) -> None:
-    """Further tables [[mechanisms]] behind those that the user has."""
+    """Append tables [[mechanisms]] to those of the user."""
     tables = document.get("mechanisms", tomlkit.aot())
     for mechanism in mechanisms:
         table = tomlkit.table()
@@ -81,23 +81,23 @@ def _append(document: tomlkit.TOMLDocument, mechanisms: Sequence[Mapping[str, An
 def _press(drive: str, shape: Shape) -> Table:
     depth = "indentation_mm" if drive == "displacement_mm" else "force_N"
     press = tomlkit.table()
-    press.add(depth, _rounded(shape.deep, 3))
+    press.add(depth, _round_floats(shape.deep, 3))
     times = {"rise_s": shape.rise_s, "hold_s": shape.hold_s, "fall_s": shape.fall_s}
-    press.add("waveform", _inline({"shape": "trapezoid", **_rounded(times, 3)}))
+    press.add("waveform", _inline({"shape": "trapezoid", **_round_floats(times, 3)}))
     press.add(tomlkit.nl())
     return press
 
 
 def _inline(values: Mapping[str, Any]) -> InlineTable:
     table = tomlkit.inline_table()
-    table.update(_rounded(dict(values), 6))
+    table.update(_round_floats(dict(values), 6))
     return table
 
 
-def _rounded(value: Any, digits: int) -> Any:
-    """Floats, also within lists and tables, with so many significant digits."""
+def _round_floats(value: Any, digits: int) -> Any:
+    """Data with all floats rounded to a number of significant digits, also within lists and tables."""
     if isinstance(value, float):
         return float(f"{value:.{digits}g}")
     if isinstance(value, list | tuple):
-        return [_rounded(item, digits) for item in value]
-    return {key: _rounded(item, digits) for key, item in value.items()} if isinstance(value, dict) else value
+        return [_round_floats(item, digits) for item in value]
+    return {key: _round_floats(item, digits) for key, item in value.items()} if isinstance(value, dict) else value

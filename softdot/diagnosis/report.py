@@ -1,4 +1,4 @@
-"""The evidence of a diagnosis: report.html, the verdict in sentences and what it rests on, and its plots."""
+"""The evidence of a diagnosis: report.html, with the verdict in sentences and its grounds, and plots."""
 
 import base64
 from collections.abc import Iterator, Sequence
@@ -29,13 +29,13 @@ from foundation.files import write_whole_text
 from softdot.version import installed_version
 
 HERE = Path(__file__).parent
-MOST_RUNS = 4
-MOST_SCREENED = 12
+MOST_DRAWN_RUNS = 4
+MOST_SCREENED_ROWS = 12
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A PNG with its caption. section : of the page."""
+    """A picture of the report as PNG, with its caption and the section of the page that shows it."""
 
     section: str
     path: Path
@@ -51,7 +51,7 @@ def write_evidence(
     resimulated: Sequence[Resimulation],
     folder: Path,
 ) -> None:
-    """folder/plots/*.png and folder/report.html. summary : content of verdict.json in plain data."""
+    """Write folder/plots/*.png and folder/report.html. summary : content of verdict.json in plain data."""
     pictures = list(_pictures(recording, findings, resimulated, folder / "plots"))
     write_whole_text(folder / "report.html", page_text(findings, told, summary, pictures))
 
@@ -59,7 +59,7 @@ def write_evidence(
 def page_text(
     findings: Findings, told: Sequence[Sentence], summary: dict[str, Any], pictures: Sequence[Picture]
 ) -> str:
-    """report.html. Every number is printed by diagnose.figures, as in the sentences that are told."""
+    """The text of report.html. Numbers are printed by diagnose.figures, as in the sentences of the verdict."""
     environment = page_environment(HERE)
     environment.filters |= {
         "figure": figure, "percent": percent, "p_value": p_alone, "probability": probability, "where": component_words
@@ -68,20 +68,20 @@ def page_text(
     return environment.get_template("verdict.html").render(
         v=summary,
         version=installed_version(),
-        verdict_class=HEADS[findings.grade][0],
+        verdict_class=HEADLINES[findings.grade][0],
         title=_title(findings),
         told=told,
         detected=detection_p_value(findings),
         parameters=list(_parameter_rows(findings.best)) if findings.best else [],
         explanations=_explanation_rows(findings),
         pictures=[(picture, base64.b64encode(picture.path.read_bytes()).decode("ascii")) for picture in pictures],
-        screened=summary["screened"][:MOST_SCREENED],
+        screened=summary["screened"][:MOST_SCREENED_ROWS],
         noise=_noise_rows(summary),
     )
 
 
 def _parameter_rows(best: FittedModel) -> Iterator[list[str]]:
-    """Mechanism, quantity, value, low, high, unit and remark."""
+    """Rows of the table of parameters: mechanism, quantity, value, low, high, unit and remark."""
     for setting, intervals in zip(best.settings, best.parameters, strict=True):
         what = setting_words(setting)
         for name, interval in intervals.items():
@@ -95,24 +95,24 @@ def _parameter_rows(best: FittedModel) -> Iterator[list[str]]:
 
 
 def _explanation_rows(findings: Findings) -> list[tuple[bool, str, FittedModel]]:
-    """Whether it is the named one, its words, and the model."""
+    """For each explanation whether it is the named one, its words, and the model."""
     return [(model is findings.best, model_words(model), model) for model in findings.models]
 
 
-HEADS = {
+HEADLINES = {
     Grade.AGREEMENT: ("good", "Simulation and recordings agree"),
     Grade.IDENTIFIED: ("found", "What your simulation left out"),
     Grade.MAIN_PART: ("found", "Most of what your simulation left out"),
     Grade.KIND_ONLY: ("unknown", "What kind of thing your simulation left out"),
     Grade.UNEXPLAINED: ("unknown", "Simulation and recordings differ, and no known mechanism explains it"),
 }
-"""Of each grade the class of its box, and the title of the page."""
-SEVERAL = "Simulation and recordings differ, and several known mechanisms explain it alike"
+"""Grade -> class of the box of the verdict, and headline of the page."""
+AMBIGUOUS_HEADLINE = "Simulation and recordings differ, and several known mechanisms explain it alike"
 
 
 def _title(findings: Findings) -> str:
     several = findings.ambiguous and findings.grade is Grade.UNEXPLAINED
-    return SEVERAL if several else HEADS[findings.grade][1]
+    return AMBIGUOUS_HEADLINE if several else HEADLINES[findings.grade][1]
 
 
 def _pictures(
@@ -142,16 +142,14 @@ def _pictures(
         yield Picture("gains", gains, "Which explanation predicts best", text)
 
 
-def runs_to_draw(
-    recording: Recording, findings: Findings, resimulated: Sequence[Resimulation]
-) -> list[tuple[str, Any]]:
-    """Labels and signals of the full model: runs that were pressed again, then those with the largest excess."""
+def runs_to_draw(recording: Recording, findings: Findings, resimulated: Sequence[Resimulated]) -> list[tuple[str, Any]]:
+    """Label and signals of the full model for the runs pressed again; then labels of those with the largest excess."""
     pressed = {one.run: one.signals for one in resimulated}
     excess = {run.label: 0.0 for run in recording.runs}
     for place in findings.places:
         excess[place.run] += place.share
     others = sorted((label for label in excess if label not in pressed), key=lambda label: -excess[label])
-    return [(label, pressed.get(label)) for label in [*pressed, *others]][:MOST_RUNS]
+    return [(label, pressed.get(label)) for label in [*pressed, *others]][:MOST_DRAWN_RUNS]
 
 
 def _noise_rows(summary: dict[str, Any]) -> list[tuple[str, str, dict[str, Any]]]:

@@ -9,9 +9,9 @@ import numpy as np
 from foundation.arrays import Ints
 from foundation.errors import InputError
 from geometry.braille_cells import FIRST_CELL
-from softdot.braille_text.back_translation import back_translated, english_text
+from softdot.braille_text.back_translation import back_translate, english_text
 from softdot.braille_text.english import english_cells
-from softdot.braille_text.liblouis import INSTALL, liblouis, louis_cells
+from softdot.braille_text.liblouis import INSTALL_ADVICE, liblouis, louis_cells
 
 MOST_CELLS = 20_000
 DOTS, KINDS_OF_CELL = 6, 64
@@ -25,7 +25,7 @@ def cells_of(text: str, table: str | None = None) -> Ints:
     line = " ".join(text.split())
     if not line.strip("⠀"):
         raise InputError("text: is empty, a line needs at least one character")
-    characters = (english_cells(line, INSTALL) if table is None else louis_cells(line, table)).strip("⠀ ")
+    characters = (english_cells(line, INSTALL_ADVICE) if table is None else louis_cells(line, table)).strip("⠀ ")
     cells = np.array([ord(one) - FIRST_CELL for one in characters.replace(" ", "⠀")], dtype=np.int64)
     if len(cells) > MOST_CELLS:
         raise InputError(f"text: has {len(cells)} cells, at most {MOST_CELLS} are allowed in a line")
@@ -45,4 +45,4 @@ def text_of(cells: Sequence[int] | Ints, table: str | None = None) -> str:
     if table is None:
         return english_text(braille(cells))
     found = liblouis()
-    return braille(cells) if found is None else back_translated(found.called_by, braille(cells), table)
+    return braille(cells) if found is None else back_translate(found.called_by, braille(cells), table)

@@ -206,7 +206,7 @@ def test_the_full_model_can_be_left_out_and_that_is_told(tmp_path, diagnosed, fi
     finding(**NAMED)
     _, verdict, _ = diagnosed(write_toy(tmp_path / "rig"), "--fast-model-only")
     assert verdict["fit"]["resimulated"] == []
-    assert verdict["warnings"][-1] == engines.UNCHECKED
+    assert verdict["warnings"][-1] == engines.UNCHECKED_SENTENCE
 
 
 @pytest.mark.parametrize(

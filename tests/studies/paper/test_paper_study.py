@@ -18,7 +18,7 @@ PARTS = {
     "analytical": analytical,
     "segments": lambda _progress, folder, _executor: section_of(study(), folder),
 }
-NAMES, FIND = whole.PARTS, whole._part
+NAMES, FIND = whole.STUDY_PARTS, whole._part
 FOR_CALIBRATION = ("table1.", "section2.p", "section2.h2", "section2.E2")
 
 
@@ -26,7 +26,7 @@ FOR_CALIBRATION = ("table1.", "section2.p", "section2.h2", "section2.E2")
 def no_presses():
     """Sections of made-up presses, so that nothing is solved."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(whole, "PARTS", ("analytical", "segments"))
+        patch.setattr(whole, "STUDY_PARTS", ("analytical", "segments"))
         patch.setattr(whole, "_part", PARTS.__getitem__)
         yield
 
