@@ -18,10 +18,10 @@ from scipy.interpolate import PchipInterpolator
 from foundation.arrays import Floats
 from softdot.commands.read import run_read
 from softdot.reading.conditions import ReadingConditions, standard_of
-from softdot.reading.kernels import opened_kernel, readout_of
+from softdot.reading.kernels import open_kernel, readout_of
 from softdot.reading.line import cell_pitch_mm
 from softdot.reading.motion import press_times
-from softdot.reading.voltages import Reader, behind_readout
+from softdot.reading.voltages import Reader, readout_voltages
 
 SAMPLING_HZ, FINE = 500.0, 8
 
@@ -51,14 +51,14 @@ def main() -> None:
     asked.add_argument("--seed", type=int, default=1)
     chosen = asked.parse_args()
     found = np.load(chosen.charges)
-    kernel = opened_kernel(chosen.kernel)
+    kernel = open_kernel(chosen.kernel)
     usual = ReadingConditions(noise_mV=chosen.noise_mV, sampling_Hz=SAMPLING_HZ)
     conditions = usual if found["slide"] else replace(usual, mode="press")
-    known = conditions.resolved(kernel)
+    known = conditions.with_implied_values(kernel)
     standard = standard_of(kernel, known.standard)
     time, charge = charges_in_time(found, known, cell_pitch_mm(standard))
     at = np.arange(time[0], time[-1], 1.0 / SAMPLING_HZ)
-    clean = behind_readout(
+    clean = readout_voltages(
         Reader(kernel, standard, readout_of(kernel, None)), time, charge, at, 1.0 / SAMPLING_HZ / FINE
     )
     voltage = clean + 1e-3 * chosen.noise_mV * np.random.default_rng(chosen.seed).standard_normal(clean.shape)

@@ -48,29 +48,29 @@ def run_read(
     from softdot.reading.cells import cells_of
     from softdot.reading.conditions import ReadingConditions
     from softdot.reading.decoders import named_decoders
-    from softdot.reading.kernels import opened_kernel, readout_of
-    from softdot.reading.line_reading import content, read_line
-    from softdot.reading.recorded_file import recorded_voltages
-    from softdot.reading.signals import shown_signals, signals
+    from softdot.reading.kernels import open_kernel, readout_of
+    from softdot.reading.line_reading import read_line, reading_content
+    from softdot.reading.recorded_file import read_voltages
+    from softdot.reading.signals import page_signals, signal_arrays
     from softdot.system_libraries import name_missing_library
 
     progress = progress or Logged()
     with name_missing_library():
         names = named_decoders(decoders)
         cells = None if recording is not None and not (text or "").strip() else cells_of(text or "", table)
-        kernel = opened_kernel(kernel_folder, config)
-        heard = None if recording is None else recorded_voltages(recording, len(kernel.centres_mm))
+        kernel = open_kernel(kernel_folder, config)
+        heard = None if recording is None else read_voltages(recording, len(kernel.centres_mm))
         with staged_folder(out, READING) as folder:
             chosen = conditions or ReadingConditions()
             reading = read_line(kernel, readout_of(kernel, config), chosen, names, progress, cells, heard)
             progress.stage("export")
-            arrays = signals(reading)
+            arrays = signal_arrays(reading)
             summary: dict[str, Any] = plain(
                 {
                     "format": READING.format,
                     "softdot_version": installed_version(),
                     "config_hash": kernel.about["config_hash"],
-                    **content(reading, text if cells is not None else None, table),
+                    **reading_content(reading, text if cells is not None else None, table),
                     "table": table,
                     "recording": None if recording is None else str(recording),
                     "config": kernel.about["config"],
@@ -81,7 +81,7 @@ def run_read(
                 np.savez_compressed(file, **arrays)  # type: ignore[arg-type]
             draw_signals(arrays, kernel.about["labels"], folder / "signals.png")
             if cells is not None:
-                write_reading_page(folder / "report.html", summary, shown_signals(reading))
+                write_reading_page(folder / "report.html", summary, page_signals(reading))
             write_json(folder / READING.summary, summary)
     return summary
 
@@ -116,15 +116,15 @@ def _study_conditions(chosen: Namespace, config: Config | None) -> int:
     from dataclasses import replace
 
     from foundation.errors import InputError
-    from softdot.reading.kernels import opened_kernel
-    from softdot.reading.study import ReadingStudy, load_study, usual_axes
+    from softdot.reading.kernels import open_kernel
+    from softdot.reading.study import ReadingStudy, default_axes, load_study
     from softdot.reading.study_run import FOLDER, run_reading_study
 
     if chosen.recording is not None:
         raise InputError("--recording: a study makes its own voltages; leave it out")
-    kernel = opened_kernel(Path(chosen.kernel), config)
+    kernel = open_kernel(Path(chosen.kernel), config)
     base = conditions_of(chosen)
-    usual = ReadingStudy(base, usual_axes(kernel, base))
+    usual = ReadingStudy(base, default_axes(kernel, base))
     study = usual if chosen.conditions is None else load_study(Path(chosen.conditions), kernel, base)
     if chosen.text:
         study = replace(study, text=chosen.text, table=chosen.table)
@@ -161,7 +161,7 @@ def _search_designs(chosen: Namespace) -> int:
     from softdot.reading.decoders import named_decoders
     from softdot.reading.designs.design_file import load_request
     from softdot.reading.designs.run import FOLDER, AskedReading, run_designs
-    from softdot.reading.study import USUAL_TEXT
+    from softdot.reading.study import DEFAULT_TEXT
 
     for name in ("kernel", "config", "recording", "conditions"):
         if getattr(chosen, name) is not None:
@@ -170,7 +170,7 @@ def _search_designs(chosen: Namespace) -> int:
         raise InputError("--design: is another search than --study; give one of them")
     decoder = named_decoders(chosen.decoders)[0]
     request = load_request(Path(chosen.design), chosen.set)
-    asked = AskedReading(chosen.text or USUAL_TEXT, chosen.table, decoder, conditions_of(chosen))
+    asked = AskedReading(chosen.text or DEFAULT_TEXT, chosen.table, decoder, conditions_of(chosen))
     summary = _run_resumable(
         chosen,
         FOLDER,

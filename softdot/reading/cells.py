@@ -1,5 +1,5 @@
-"""Text to the cells of a line and back. A cell is a number from 0 to 63: bit k - 1 stands for dot k, as in Unicode's
-block from U+2800 on.
+"""Text to the cells of a line and back. A cell is a number from 0 to 63: its bit k - 1 stands for dot k, as in
+Unicode's block from U+2800 on.
 """
 
 from collections.abc import Sequence
@@ -18,9 +18,9 @@ DOTS, KINDS_OF_CELL = 6, 64
 
 
 def cells_of(text: str, table: str | None = None) -> Ints:
-    """Cells (c,) of a text in one line, whose line breaks are blanks; table : of liblouis, None for plain English.
+    """Cells (c,) of a text in one line, whose line breaks are blanks. table : of liblouis, None for plain English.
 
-    InputError for a text that is empty or too long, for what the table lacks, and for cells of eight dots.
+    InputError for a text that is empty or too long, for characters that the table lacks, and for cells of eight dots.
     """
     line = " ".join(text.split())
     if not line.strip("⠀"):
@@ -36,12 +36,12 @@ def cells_of(text: str, table: str | None = None) -> Ints:
 
 
 def braille(cells: Sequence[int] | Ints) -> str:
-    """Unicode Braille of cells (c,)."""
+    """Cells (c,) as characters of Unicode Braille."""
     return "".join(chr(FIRST_CELL + int(cell)) for cell in cells)
 
 
 def text_of(cells: Sequence[int] | Ints, table: str | None = None) -> str:
-    """Text of cells (c,); without liblouis, where it is needed, and where it fails, the cells themselves."""
+    """The text of cells (c,); where liblouis is needed and missing, or fails, the cells themselves."""
     if table is None:
         return english_text(braille(cells))
     found = liblouis()

@@ -1,4 +1,4 @@
-"""How a line is read: everything that is chosen, with units in the names, its bounds and its defaults."""
+"""The conditions of reading a line, with units in their names, bounds and defaults."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
@@ -12,12 +12,14 @@ from softdot.arrays.kernel import ArrayKernel
 Mode = Literal["slide", "press"]
 MODES: tuple[Mode, ...] = get_args(Mode)
 WIDEST_SIGMA = 2.5
-"""Scatter of dots is cut there: a standard's range is taken for this many standard deviations to each side."""
+"""Standard deviations at which the scatter of dots is cut; the range of a standard is taken for that many to each
+side.
+"""
 HEIGHT_SCATTER_MM, POSITION_SCATTER_MM = 0.015, 0.03
 """Assumed where the standard states no range; no source gives them."""
-USUAL_SHARE_OF_DEPTH = 0.75
+DEFAULT_SHARE_OF_DEPTH = 0.75
 PITCH_TOLERANCE_MM = 0.01
-WIDEST_TREMOR = 4.0  # RMS, where the wobble is cut
+WIDEST_TREMOR_RMS = 4.0  # RMS, where the wobble is cut
 BOUNDS: dict[str, tuple[float, float]] = {
     "speed_mm_per_s": (0.5, 500.0),
     "depth_mm": (1e-3, 5.0),
@@ -42,10 +44,11 @@ BOUNDS: dict[str, tuple[float, float]] = {
 
 @dataclass(frozen=True)
 class ReadingConditions:
-    """None stands for what the kernel or the standard say (resolved).
+    """The conditions of reading a line; None stands for the value that kernel or standard imply.
 
-    depth_mm or force_N : of nominal dots below the resting top, or the force on all dots; height_mm : of all dots,
-    over the nominal one they are so much deeper. worn, missing : shares of the dots. hum_mV : amplitude of 50 Hz.
+    depth_mm or force_N : depth of nominal dots below the resting top, or force on all dots. height_mm : of all dots,
+    which are deeper by its excess over the nominal one. worn, missing : shares of the dots. hum_mV : amplitude of 50
+    Hz.
     """
 
     standard: str | None = None
@@ -75,28 +78,30 @@ class ReadingConditions:
         for name, (low, high) in BOUNDS.items():
             value = getattr(self, name)
             if value is not None and not (isfinite(value) and low <= value <= high):
-                raise InputError(f"{option(name)} = {value:g}: must be from {low:g} to {high:g}")
+                raise InputError(f"{option_name(name)} = {value:g}: must be from {low:g} to {high:g}")
         if self.seed < 0:
             raise InputError(f"--seed = {self.seed}: must be at least 0")
         if self.force_N is not None and self.mode == "press":
             raise InputError(f"--force-N = {self.force_N:g}: --mode press is driven by its depth; give --depth-mm")
 
-    def resolved(self, kernel: ArrayKernel) -> "ReadingConditions":
-        """With the standard, depth and scatter that kernel and standard imply. InputError for what does not fit."""
+    def with_implied_values(self, kernel: ArrayKernel) -> "ReadingConditions":
+        """The conditions with the standard, depth and scatter that kernel and standard imply. InputError for a
+        contradiction.
+        """
         if self.depth_mm is not None and self.force_N is not None:
             raise InputError(f"--force-N = {self.force_N:g}: give either --depth-mm or --force-N, not both")
         chosen = standard_of(kernel, self.standard)
         nominal = chosen.nominal_mm("height_mm", "--standard")
         height = nominal if self.height_mm is None else self.height_mm
-        scatter = _scatter_mm(chosen) if self.height_scatter_mm is None else self.height_scatter_mm
+        scatter = _height_scatter_mm(chosen) if self.height_scatter_mm is None else self.height_scatter_mm
         known = replace(self, standard=chosen.name, height_mm=height, height_scatter_mm=scatter)
         deepest = float(kernel.depth_mm[-1])
-        margin = max(0.0, height - nominal) + WIDEST_SIGMA * scatter + 1e-3 * WIDEST_TREMOR * self.tremor_um
+        margin = max(0.0, height - nominal) + WIDEST_SIGMA * scatter + 1e-3 * WIDEST_TREMOR_RMS * self.tremor_um
         most = deepest - margin
         if most <= 0.0:
             raise InputError(f"height and its scatter: the highest dot is {margin:.3g} mm deeper than a nominal one, "
                              f"and the kernel ends at {deepest:.3g} mm")  # fmt: skip
-        depth = min(USUAL_SHARE_OF_DEPTH * deepest, most) if self.depth_mm is None else self.depth_mm
+        depth = min(DEFAULT_SHARE_OF_DEPTH * deepest, most) if self.depth_mm is None else self.depth_mm
         if self.force_N is None and depth > most + 1e-9:
             raise InputError(
                 f"--depth-mm = {depth:g}: with scatter and tremor a dot could be {depth + margin:.4g} mm deep, and the "
@@ -109,37 +114,39 @@ class ReadingConditions:
         return replace(known, depth_mm=most if self.force_N is not None else depth)
 
     def as_dict(self) -> dict[str, Any]:
-        """All of them."""
+        """All conditions by name."""
         return {one.name: getattr(self, one.name) for one in fields(self)}
 
 
-TIMES = ("press_s", "hold_s")
-OF_A_RECORDING = ("standard", "mode", *TIMES, "speed_mm_per_s")
-"""What its decoders are told; the speed only of presses, where it says when the next one begins."""
+PRESS_TIMES = ("press_s", "hold_s")
+RECORDING_CONDITIONS = ("standard", "mode", *PRESS_TIMES, "speed_mm_per_s")
+"""Conditions that the decoders of a recording are told; the speed only of presses, where it gives the time of the
+next.
+"""
 
 
 def refuse_idle(conditions: ReadingConditions, stated: Iterable[str], is_recorded: bool) -> None:
-    """InputError for a stated condition that changes nothing beside the others, or beside a recording."""
+    """InputError for a stated condition that has no effect beside the others, or beside a recording."""
     slides = conditions.mode == "slide"
     idle = {
-        **(dict.fromkeys(TIMES, "with --mode press") if slides else {}),
+        **(dict.fromkeys(PRESS_TIMES, "with --mode press") if slides else {}),
         **({"tremor_Hz": "with --tremor-um above 0"} if conditions.tremor_um == 0.0 else {}),
         **({"wear_mm": "with --worn above 0"} if conditions.worn == 0.0 else {}),
     }
     for name in stated:
-        if is_recorded and (name not in OF_A_RECORDING or (slides and name == "speed_mm_per_s")):
+        if is_recorded and (name not in RECORDING_CONDITIONS or (slides and name == "speed_mm_per_s")):
             idle[name] = "on voltages that are simulated, and here --recording has its own"
         if name in idle:
-            raise InputError(f"{option(name)} = {getattr(conditions, name)}: acts only {idle[name]}; leave it out")
+            raise InputError(f"{option_name(name)} = {getattr(conditions, name)}: acts only {idle[name]}; leave it out")
 
 
-def option(name: str) -> str:
-    """As it is called at the command line: --noise-mV."""
+def option_name(name: str) -> str:
+    """The option of the command line for a condition: --noise-mV."""
     return f"--{name.replace('_', '-')}"
 
 
 def standard_of(kernel: ArrayKernel, name: str | None) -> BrailleStandard:
-    """The named standard, else the kernel's. InputError where its dots do not lie as the segments do."""
+    """The named standard, else the kernel's. InputError where its dots are not as far apart as the segments."""
     chosen = standard(name or kernel.about["standard"], "--standard")
     pitch, own = chosen.nominal_mm("dot_pitch_mm", "--standard"), float(kernel.about["pitch_mm"])
     if abs(pitch - own) > PITCH_TOLERANCE_MM:
@@ -152,14 +159,14 @@ def standard_of(kernel: ArrayKernel, name: str | None) -> BrailleStandard:
 
 
 def standard_warnings(kernel: ArrayKernel, chosen: BrailleStandard) -> list[str]:
-    """Where the dots of the kernel are not those of the standard."""
+    """A warning where the dots of the kernel differ from those of the standard."""
     own, base = kernel.about["dot"]["base_diameter_mm"], chosen.quantities["base_diameter_mm"].nominal_mm
     if base is None or abs(base - own) < PITCH_TOLERANCE_MM:
         return []
     return [f"dots of '{chosen.name}' have a base of {base:g} mm, those of the kernel {own:g} mm: contact differs"]
 
 
-def _scatter_mm(chosen: BrailleStandard) -> float:
+def _height_scatter_mm(chosen: BrailleStandard) -> float:
     size = chosen.quantities["height_mm"]
     if size.minimum_mm is None or size.maximum_mm is None:
         return HEIGHT_SCATTER_MM

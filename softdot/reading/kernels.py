@@ -1,4 +1,4 @@
-"""The kernel that a line is read with: checked against this program, the configuration and what a reader needs."""
+"""The kernel that a line is read with, checked against this program, the configuration and the needs of a reader."""
 
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,7 @@ from solve.physics import Physics
 
 
 class KernelAbout(BaseModel):
-    """What kernel.json says that a reader needs; errors and counts of presses beside it."""
+    """The content of kernel.json that a reader needs; errors and counts of presses are there too."""
 
     model_config = ConfigDict(extra="allow", frozen=True, strict=True)
     centres_mm: list[list[Finite]]
@@ -36,13 +36,15 @@ class KernelAbout(BaseModel):
     config: dict[str, Any]
 
 
-USUAL_READOUT = Readout(input_resistance_MOhm=10.0)
-"""What a reader has where no [readout] is stated."""
-ROWS = 3
+DEFAULT_READOUT = Readout(input_resistance_MOhm=10.0)
+"""The read-out of a reader where no [readout] is stated."""
+DOT_ROWS = 3
 
 
-def opened_kernel(folder: Path, config: Config | None = None) -> ArrayKernel:
-    """Of a folder. InputError for one that this program did not write, of another design, or that cannot read."""
+def open_kernel(folder: Path, config: Config | None = None) -> ArrayKernel:
+    """Open the kernel in a folder. InputError for one of another program or design, or without a segment over each
+    row.
+    """
     kernel = load_kernel(folder)
     where = f"kernel '{folder}'"
     try:
@@ -57,7 +59,7 @@ def opened_kernel(folder: Path, config: Config | None = None) -> ArrayKernel:
             f"{where}: softdot_version = '{kernel.about['softdot_version']}': this is {installed_version()}; make the "
             "kernel again by softdot array --kernel"
         )
-    checked_kernel(kernel, where)
+    check_kernel(kernel, where)
     if config is not None and not _same_design(kernel, config):
         raise InputError(
             f"{where}: config_hash = '{kernel.about['config_hash'][:12]}': is of another design than the configuration "
@@ -66,26 +68,26 @@ def opened_kernel(folder: Path, config: Config | None = None) -> ArrayKernel:
     return kernel
 
 
-def checked_kernel(kernel: ArrayKernel, where: str) -> ArrayKernel:
-    """The same kernel. InputError, which begins with where, for one that is damaged or cannot read a line."""
+def check_kernel(kernel: ArrayKernel, where: str) -> ArrayKernel:
+    """Return the kernel. InputError, which begins with where, for one that is damaged or cannot read a line."""
     _refuse_damaged(kernel, where)
     _refuse_missing_rows(kernel, where)
     return kernel
 
 
 def readout_of(kernel: ArrayKernel, config: Config | None) -> Readout:
-    """Of the configuration, else of the kernel's, else the usual one."""
+    """The read-out of the configuration, else the kernel's, else DEFAULT_READOUT."""
     if config is not None and config.readout is not None:
         return config.readout
     own = kernel.about["config"].get("readout")
-    return USUAL_READOUT if own is None else Readout.model_validate(own)
+    return DEFAULT_READOUT if own is None else Readout.model_validate(own)
 
 
 def electronics_of(kernel: ArrayKernel, readout: Readout) -> tuple[Readout, Physics]:
-    """Read-out and stages with the mechanisms of the kernel's design that act behind the film.
+    """Read-out and stages, with the mechanisms of the kernel's design that act behind the film.
 
-    The others are in the charges of the kernel. InputError for those of single channels, and for a charge that the dot
-    leaves: a reading knows neither.
+    The other mechanisms are in the charges of the kernel. InputError for those of single channels, and for a charge
+    that the dot leaves, neither of which a reading models.
     """
     config = config_from(kernel.about["config"])
     behind = [one for one in config.mechanisms if one.traits.electrical]
@@ -101,7 +103,7 @@ def electronics_of(kernel: ArrayKernel, readout: Readout) -> tuple[Readout, Phys
 
 
 def _same_design(kernel: ArrayKernel, config: Config) -> bool:
-    """Whether both are alike but for the read-out, which changes no kernel."""
+    """Whether kernel and configuration are alike but for the read-out, which changes no kernel."""
     if config_hash(config) == kernel.about["config_hash"]:
         return True
     own = config_from(kernel.about["config"])
@@ -109,6 +111,7 @@ def _same_design(kernel: ArrayKernel, config: Config) -> bool:
 
 
 def _refuse_damaged(kernel: ArrayKernel, where: str) -> None:
+    """InputError for a kernel with numbers or shapes that cannot be."""
     for name in TABLES:
         if not np.isfinite(getattr(kernel, name)).all():
             raise InputError(f"{where}: {name} holds a number that is not finite; make it again")
@@ -133,10 +136,10 @@ def _refuse_damaged(kernel: ArrayKernel, where: str) -> None:
 
 
 def _refuse_missing_rows(kernel: ArrayKernel, where: str) -> None:
-    """A segment over each row of dots."""
+    """InputError unless there is a segment over each row of dots."""
     pitch, y = float(kernel.about["pitch_mm"]), kernel.centres_mm[:, 1]
-    for row in range(ROWS):
+    for row in range(DOT_ROWS):
         if np.abs(y - pitch * (row - 1)).min() > 0.5 * pitch + PITCH_TOLERANCE_MM:
             raise InputError(
-                f"{where}: has no segment over row {row + 1} of a cell; reading needs array.rows of at least {ROWS}"
+                f"{where}: has no segment over row {row + 1} of a cell; reading needs array.rows of at least {DOT_ROWS}"
             )

@@ -16,22 +16,24 @@ from softdot.reading.conditions import WIDEST_SIGMA, ReadingConditions
 
 @dataclass(frozen=True)
 class DotLine:
-    """Dots (d,) in the order of their x; extra_mm : how much deeper than a nominal dot each is at the same distance."""
+    """Dots (d,) in the order of their x. extra_mm : by how much each is deeper than a nominal dot under the same
+    array.
+    """
 
     x_mm: Floats
     y_mm: Floats
     extra_mm: Floats
 
-    def sorted(self) -> "DotLine":
-        """In the order of x."""
+    def in_order_of_x(self) -> "DotLine":
+        """The same dots in the order of their x."""
         order = np.argsort(self.x_mm, kind="stable")
         return DotLine(self.x_mm[order], self.y_mm[order], self.extra_mm[order])
 
 
-def raised(cells: Ints) -> Bools:
-    """Which of the six dots of each cell are there, (c, 6).
+def dots_of_cells(cells: Ints) -> Bools:
+    """Whether each of the six dots of cells (c,) is raised, (c, 6).
 
-    >>> raised(np.array([0b011001])).tolist()  # the letter d
+    >>> dots_of_cells(np.array([0b011001])).tolist()  # the letter d
     [[True, False, False, True, True, False]]
     """
     return np.asarray((np.asarray(cells)[:, None] >> np.arange(DOTS)) & 1, dtype=bool)
@@ -43,28 +45,28 @@ def cells_from(dots: Bools) -> Ints:
 
 
 def dot_places_mm(chosen: BrailleStandard) -> Floats:
-    """Places (6, 2) of the dots of a cell from its middle."""
+    """Places (6, 2) of the dots of a cell, from its middle."""
     pitch = chosen.nominal_mm("dot_pitch_mm")
     places = np.array([dot_offset_mm(dot, pitch) for dot in range(1, DOTS + 1)])
     return np.asarray(places - places.mean(axis=0))
 
 
 def cell_pitch_mm(chosen: BrailleStandard) -> float:
-    """From the middle of a cell to that of the next."""
+    """Distance from the middle of a cell to that of the next, mm."""
     return chosen.nominal_mm("cell_pitch_mm")
 
 
 def nominal_line(cells: Ints, chosen: BrailleStandard) -> DotLine:
     """The dots of cells (c,) exactly where the standard has them, in the order of x."""
-    number, dot = np.nonzero(raised(cells))
+    number, dot = np.nonzero(dots_of_cells(cells))
     places = dot_places_mm(chosen)[dot]
-    return DotLine(places[:, 0] + cell_pitch_mm(chosen) * number, places[:, 1], np.zeros(len(dot))).sorted()
+    return DotLine(places[:, 0] + cell_pitch_mm(chosen) * number, places[:, 1], np.zeros(len(dot))).in_order_of_x()
 
 
-def made_line(
+def manufactured_line(
     cells: Ints, chosen: BrailleStandard, conditions: ReadingConditions, random: np.random.Generator
 ) -> DotLine:
-    """The dots of cells (c,) as they were made and worn; conditions : resolved.
+    """The dots of cells (c,) as they were made and worn. conditions : with implied values.
 
     Heights and places scatter normally, cut at WIDEST_SIGMA. The diameter of the base is not varied: by Hertz a base
     0.05 mm wider changes the force by 2 to 3 %, as a height of 0.004 mm more does.
@@ -78,4 +80,4 @@ def made_line(
     extra = height + (conditions.height_scatter_mm or 0.0) * scatter[0] - conditions.wear_mm * worn
     x = line.x_mm + conditions.position_scatter_mm * scatter[1]
     y = line.y_mm + conditions.position_scatter_mm * scatter[2]
-    return DotLine(x[kept], y[kept], extra[kept]).sorted()
+    return DotLine(x[kept], y[kept], extra[kept]).in_order_of_x()

@@ -12,39 +12,43 @@ from softdot.arrays.kernel import ArrayKernel
 from softdot.progress import Progress
 from softdot.reading.cells import braille, text_of
 from softdot.reading.conditions import ReadingConditions, standard_of, standard_warnings
-from softdot.reading.decoders import DECODERS, seen_of
+from softdot.reading.decoders import DECODERS, decoder_input
 from softdot.reading.decoders.fitted import Track
 from softdot.reading.decoders.model import DecodedCells
 from softdot.reading.decoders.pressing import PressedCells
 from softdot.reading.kernels import electronics_of
-from softdot.reading.line import DotLine, cell_pitch_mm, made_line
-from softdot.reading.motion import ArrayPath, moved, press_times
+from softdot.reading.line import DotLine, cell_pitch_mm, manufactured_line
+from softdot.reading.motion import ArrayPath, array_path, press_times
 from softdot.reading.score import scores
-from softdot.reading.voltages import Reader, Voltages, recorded
+from softdot.reading.voltages import Reader, Voltages, record_voltages
 from solve.model import Readout
 
 LOG = logging.getLogger(__name__)
 MOST_SAMPLES = 1e8
-"""Of all segments together: half an hour at 10 kHz of six; they take a gigabyte in some of the steps."""
+"""Most samples of all segments together: half an hour at 10 kHz of six; they take a gigabyte in some of the steps."""
 
 
 @dataclass(frozen=True)
 class LineReading:
-    """cells_true (c,) : None where nobody knows; line, path : None for a recording; found : by name of the decoder."""
+    """A line that was read.
+
+    cells_true (c,) : None where they are not known. line, path : None for a recording. voltages : simulated or
+    recorded. decoded : by name of the decoder.
+    """
 
     reader: Reader
     conditions: ReadingConditions
     cells_true: Ints | None
-    heard: Voltages
+    voltages: Voltages
     line: DotLine | None
     path: ArrayPath | None
     seen: Track | PressedCells
-    found: dict[str, DecodedCells]
+    decoded: dict[str, DecodedCells]
 
     @property
     def first(self) -> DecodedCells:
-        """Of the decoder that was named first."""
-        return next(iter(self.found.values()))
+        """The cells of the decoder that was named first."""
+        return next(iter(self.decoded.values()))
 
 
 def read_line(
@@ -58,9 +62,9 @@ def read_line(
 ) -> LineReading:
     """Simulate the voltages of cells, or take recorded ones, and decode them. InputError.
 
-    Every decoder is given the reader and the voltages alone.
+    Every decoder gets the reader and the voltages alone.
     """
-    known = conditions.resolved(kernel)
+    known = conditions.with_implied_values(kernel)
     chosen = standard_of(kernel, known.standard)
     times = press_times(known, cell_pitch_mm(chosen)) if known.mode == "press" else None
     behind, physics = electronics_of(kernel, readout)
@@ -72,13 +76,13 @@ def read_line(
         _refuse_too_much(known, len(cells), reader)
         progress.stage("simulate")
         random = np.random.default_rng(known.seed)
-        line = made_line(cells, chosen, known, random)
-        path = moved(kernel, line, len(cells), chosen, known, random)
-        heard = recorded(reader, line, path, known, random, lambda done, all_: progress.step(done, all_, ""))
+        line = manufactured_line(cells, chosen, known, random)
+        path = array_path(kernel, line, len(cells), chosen, known, random)
+        heard = record_voltages(reader, line, path, known, random, lambda done, all_: progress.step(done, all_, ""))
     else:
         heard = recording
     progress.stage("decode")
-    seen = seen_of(reader, heard)
+    seen = decoder_input(reader, heard)
     found = {}
     for number, name in enumerate(names, 1):
         found[name] = DECODERS[name](reader, seen)
@@ -87,7 +91,7 @@ def read_line(
 
 
 def _refuse_too_much(known: ReadingConditions, cells: int, reader: Reader) -> None:
-    """InputError for more samples than a machine holds; else their number is told before they are made."""
+    """InputError for more samples than MOST_SAMPLES; else their number is logged."""
     travel_mm = cells * cell_pitch_mm(reader.standard)
     seconds = travel_mm / known.speed_mm_per_s if reader.presses is None else cells * reader.presses.period_s
     count = seconds * known.sampling_Hz * len(reader.kernel.centres_mm)
@@ -99,10 +103,10 @@ def _refuse_too_much(known: ReadingConditions, cells: int, reader: Reader) -> No
     LOG.info("%d cells in %.4g s, %.3g samples of all segments", cells, seconds, count)
 
 
-def content(reading: LineReading, text: str | None, table: str | None) -> dict[str, Any]:
-    """What reading.json says of a reading, but for format, version and configuration."""
+def reading_content(reading: LineReading, text: str | None, table: str | None) -> dict[str, Any]:
+    """The content of reading.json but for format, version and configuration."""
     first, true = reading.first, reading.cells_true
-    decoders = {name: _scored(true, found, table) for name, found in reading.found.items()}
+    decoders = {name: _decoder_content(true, found, table) for name, found in reading.decoded.items()}
     own = next(iter(decoders.values()))
     seconds = _duration_s(reading)
     words = len((text_of(first.cells if true is None else true, table)).split())
@@ -118,28 +122,29 @@ def content(reading: LineReading, text: str | None, table: str | None) -> dict[s
         "words_per_minute": 60.0 * words / seconds if seconds > 0.0 else None,
         "cells_per_s": count / seconds if seconds > 0.0 else None,
         "duration_s": seconds,
-        "conditions": {**reading.conditions.as_dict(), **_readout(reading.reader.readout)},
+        "conditions": {**reading.conditions.as_dict(), **_readout_conditions(reading.reader.readout)},
         "share_of_time_at_force": None if reading.path is None else reading.path.held,
-        "track": _track(reading.seen),
+        "track": _track_content(reading.seen),
         "kernel": {key: value for key, value in reading.reader.kernel.about.items() if key != "config"},
         "warnings": _warnings(reading),
     }
 
 
-def _readout(readout: Readout) -> dict[str, Any]:
-    """What is stated of the amplifier, beside the other conditions."""
+def _readout_conditions(readout: Readout) -> dict[str, Any]:
+    """The stated values of the amplifier, by names for the table of conditions."""
     stated = readout.model_dump(mode="json", exclude_none=True)
     return {f"readout_{name}": value for name, value in stated.items()}
 
 
-def _scored(true: Ints | None, found: DecodedCells, table: str | None) -> dict[str, Any]:
+def _decoder_content(true: Ints | None, found: DecodedCells, table: str | None) -> dict[str, Any]:
+    """The scores of a decoder, or its text alone where the true cells are not known."""
     if true is not None:
         return scores(true, found.cells, table)
     return {"text_read": text_of(found.cells, table), "cells_read": braille(found.cells)}
 
 
 def _duration_s(reading: LineReading) -> float:
-    """From the first cell to the last, and as much as one cell takes."""
+    """Time from the first cell to the last and through that, s."""
     passed = reading.first.passed_s if reading.path is None else reading.path.reached_s
     if len(passed) < 2:
         presses = reading.reader.presses
@@ -149,8 +154,8 @@ def _duration_s(reading: LineReading) -> float:
     return float((passed[-1] - passed[0]) * len(passed) / (len(passed) - 1))
 
 
-def _track(seen: Track | PressedCells) -> dict[str, float] | None:
-    """What the voltages alone told of the motion."""
+def _track_content(seen: Track | PressedCells) -> dict[str, float] | None:
+    """The motion as found from the voltages alone."""
     return vars(seen.posture) if isinstance(seen, Track) else None
 
 

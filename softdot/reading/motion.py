@@ -1,5 +1,5 @@
-"""How the array moves over a line: it slides at constant depth or force, or is set down cell by cell. Tremor is white
-noise behind a Butterworth low-pass of order two, one for the place across the line and one for depth.
+"""The motion of the array over a line: it slides at constant depth or force, or is set down cell by cell. Tremor is
+white noise behind a Butterworth low-pass of order two, one for the place across the line and one for depth.
 """
 
 from dataclasses import dataclass
@@ -11,22 +11,26 @@ from foundation.arrays import Bools, Floats, Ints
 from foundation.errors import InputError
 from geometry.braille_standards import BrailleStandard
 from softdot.arrays.kernel import ArrayKernel
-from softdot.reading.conditions import WIDEST_TREMOR, ReadingConditions
+from softdot.reading.conditions import WIDEST_TREMOR_RMS, ReadingConditions
 from softdot.reading.line import DotLine, cell_pitch_mm
 
-STEP_MM = 0.05
-"""Of the path between two states of the array."""
+PATH_STEP_MM = 0.05
+"""Longest way between two states of the array."""
 PRESS_STEPS, TREMOR_STEPS = 40, 20
+"""States of the array while it goes down, and in a period of the tremor."""
 LEAD_MM = 3.0
-CHUNK = 20_000
-FORCE_TOLERANCE, DEPTH_TOLERANCE_MM = 1e-4, 1e-9
+"""Way before the first dot and behind the last."""
+CHUNK_TIMES = 20_000
+"""Number of times at which charges are looked up together, which bounds the memory."""
+RELATIVE_FORCE_TOLERANCE, DEPTH_TOLERANCE_MM = 1e-4, 1e-9
 
 
 @dataclass(frozen=True)
 class ArrayPath:
     """Where the array's middle is at times (t,), and how deep a nominal dot under it would be.
 
-    reached_s (c,) : when each cell is read. held : the share of times at which the force was held, None for a depth.
+    reached_s (c,) : time at which each cell is read. held : share of the times at which the force was held, None for a
+    path of given depth.
     """
 
     time_s: Floats
@@ -40,7 +44,9 @@ class ArrayPath:
 
 @dataclass(frozen=True)
 class PressTimes:
-    """A press begins each period_s, the first at time 0; it goes down for down_s and holds for hold_s."""
+    """The times of presses: one begins each period_s, the first at time 0; it goes down for down_s and holds for
+    hold_s.
+    """
 
     period_s: float
     down_s: float
@@ -48,13 +54,13 @@ class PressTimes:
 
 
 def reach_mm(kernel: ArrayKernel, yaw_deg: float) -> float:
-    """Along the line, how far from the array's middle a dot may be and still touch it."""
+    """Largest distance along the line from the array's middle at which a dot touches it, mm."""
     half_x, half_y = np.abs(kernel.x_mm).max(), np.abs(kernel.y_mm).max()
     angle = radians(yaw_deg)
     return float(half_x * cos(angle) + half_y * abs(sin(angle)))
 
 
-def near(kernel: ArrayKernel, line: DotLine, path: ArrayPath, span: slice) -> tuple[Floats, Floats, Floats]:
+def dots_near(kernel: ArrayKernel, line: DotLine, path: ArrayPath, span: slice) -> tuple[Floats, Floats, Floats]:
     """Places x, y in the frame of the array and depths, each (t, k), of the dots near it at the times of a span.
 
     NaN where there are fewer than k.
@@ -78,7 +84,7 @@ def near(kernel: ArrayKernel, line: DotLine, path: ArrayPath, span: slice) -> tu
     return x, np.where(there, y, np.nan), np.where(there, depth, np.nan)
 
 
-def moved(
+def array_path(
     kernel: ArrayKernel,
     line: DotLine,
     count: int,
@@ -86,22 +92,24 @@ def moved(
     conditions: ReadingConditions,
     random: np.random.Generator,
 ) -> ArrayPath:
-    """The path over a line of so many cells; conditions : resolved. InputError for a force that no depth gives."""
+    """The path over a line of count cells. conditions : with implied values. InputError for a force that no depth
+    gives.
+    """
     pitch = cell_pitch_mm(chosen)
     if conditions.mode == "press":
-        return _pressed(count, pitch, conditions, random)
-    path = _slid(count, pitch, reach_mm(kernel, conditions.yaw_deg), conditions, random)
-    return path if conditions.force_N is None else _at_force(kernel, line, path, conditions.force_N)
+        return _press_path(count, pitch, conditions, random)
+    path = _slide_path(count, pitch, reach_mm(kernel, conditions.yaw_deg), conditions, random)
+    return path if conditions.force_N is None else _path_at_force(kernel, line, path, conditions.force_N)
 
 
-def _slid(
+def _slide_path(
     count: int, pitch: float, reach: float, conditions: ReadingConditions, random: np.random.Generator
 ) -> ArrayPath:
-    """From before the first dot to behind the last; where it begins within a cell pitch is left to chance."""
+    """The path from before the first dot to behind the last; its start within a cell pitch is random."""
     speed = conditions.speed_mm_per_s
     first = -pitch / 2.0 - reach - LEAD_MM - pitch * random.random()
     last = pitch * (count - 0.5) + reach + LEAD_MM
-    step = min(STEP_MM / speed, 1.0 / (TREMOR_STEPS * conditions.tremor_Hz))
+    step = min(PATH_STEP_MM / speed, 1.0 / (TREMOR_STEPS * conditions.tremor_Hz))
     time: Floats = step * np.arange(int(np.ceil((last - first) / speed / step)) + 1, dtype=np.float64)
     y, depth = _tremor(len(time), step, conditions, random)
     reached: Floats = (pitch * np.arange(count, dtype=np.float64) - first) / speed
@@ -112,13 +120,13 @@ def _slid(
 
 
 def press_times(conditions: ReadingConditions, pitch_mm: float) -> PressTimes:
-    """Down, hold, up, and on to the next cell at the speed."""
+    """The times of presses: down, hold, up, and on to the next cell at the speed."""
     down, hold = conditions.press_s, conditions.hold_s
     return PressTimes(2.0 * down + hold + pitch_mm / conditions.speed_mm_per_s, down, hold)
 
 
-def _pressed(count: int, pitch: float, conditions: ReadingConditions, random: np.random.Generator) -> ArrayPath:
-    """Set down once a period, lifted while it moves; the middle is off by the same part of a millimetre each time."""
+def _press_path(count: int, pitch: float, conditions: ReadingConditions, random: np.random.Generator) -> ArrayPath:
+    """The path of an array that is set down once a period and lifted while it moves; its middle is always off alike."""
     times = press_times(conditions, pitch)
     period, down, hold = times.period_s, times.down_s, times.hold_s
     step = down / PRESS_STEPS
@@ -137,7 +145,7 @@ def _pressed(count: int, pitch: float, conditions: ReadingConditions, random: np
 def _tremor(
     count: int, step_s: float, conditions: ReadingConditions, random: np.random.Generator
 ) -> tuple[Floats, Floats]:
-    """Wobble across the line and of the depth in mm, (t,) each."""
+    """Wobble across the line and in depth, mm, (t,) each."""
     if conditions.tremor_um == 0.0:
         return np.zeros(count), np.zeros(count)
     from scipy.signal import butter, sosfilt, sosfreqz
@@ -147,19 +155,19 @@ def _tremor(
     warm = int(3.0 / (corner * step_s))
     wobble = sosfilt(filters, random.standard_normal((2, warm + count)), axis=1)[:, warm:]
     rms = float(np.sqrt(np.mean(np.abs(sosfreqz(filters, 65_536)[1]) ** 2)))
-    wobble = 1e-3 * conditions.tremor_um * np.clip(wobble / rms, -WIDEST_TREMOR, WIDEST_TREMOR)
+    wobble = 1e-3 * conditions.tremor_um * np.clip(wobble / rms, -WIDEST_TREMOR_RMS, WIDEST_TREMOR_RMS)
     return wobble[0], wobble[1]
 
 
-def _at_force(kernel: ArrayKernel, line: DotLine, path: ArrayPath, force_N: float) -> ArrayPath:
+def _path_at_force(kernel: ArrayKernel, line: DotLine, path: ArrayPath, force_N: float) -> ArrayPath:
     """The path with the depth that gives this force, at most that of the path, where a stop holds the array.
 
     By the Illinois variant of regula falsi (Dowell and Jarratt, BIT 11 (1971) 168), at all times at once.
     """
     depth, held = np.zeros(len(path.time_s)), np.zeros(len(path.time_s), dtype=bool)
-    for begin in range(0, len(depth), CHUNK):
-        span = slice(begin, begin + CHUNK)
-        x, y, stop = near(kernel, line, path, span)
+    for begin in range(0, len(depth), CHUNK_TIMES):
+        span = slice(begin, begin + CHUNK_TIMES)
+        x, y, stop = dots_near(kernel, line, path, span)
         lifted = stop - path.depth_mm[span, None]
         depth[span], held[span] = _depth_of_force(kernel, (x, y, lifted), path.depth_mm[span], force_N)
     if not held.any():
@@ -174,7 +182,9 @@ def _at_force(kernel: ArrayKernel, line: DotLine, path: ArrayPath, force_N: floa
 def _depth_of_force(
     kernel: ArrayKernel, dots: tuple[Floats, Floats, Floats], stop: Floats, force_N: float
 ) -> tuple[Floats, Bools]:
-    """Depth (t,) and whether it is above the stop (t,); dots : x, y and extra depth (t, k)."""
+    """Depth (t,) at which the force is reached, and whether it is above the stop (t,); dots : x, y and extra depth (t,
+    k).
+    """
     x, y, extra = dots
 
     def excess(depth: Floats, rows: Ints) -> Floats:
@@ -195,7 +205,7 @@ def _depth_of_force(
         f_high = np.where(above, found, np.where(side < 0.0, 0.5 * f_high, f_high))
         low, high = np.where(above, low, middle), np.where(above, middle, high)
         side = np.where(above, 1.0, -1.0)
-        left = (np.abs(found) > FORCE_TOLERANCE * force_N) & (high - low > DEPTH_TOLERANCE_MM)
+        left = (np.abs(found) > RELATIVE_FORCE_TOLERANCE * force_N) & (high - low > DEPTH_TOLERANCE_MM)
         rows = rows[left]
         low, high, f_low, f_high, side = (one[left] for one in (low, high, f_low, f_high, side))
     return depth, at_stop > 0.0

@@ -9,12 +9,12 @@ from foundation.errors import InputError
 from foundation.files import read_text
 from softdot.reading.voltages import Voltages
 
-LEAST_SAMPLES, UNEVEN = 50, 0.2
-"""A sample may be off its even place by this part of the distance to the next."""
+LEAST_SAMPLES, MOST_UNEVEN_SHARE = 50, 0.2
+"""Least number of samples, and how far one may be off its even place as a share of the step."""
 
 
-def recorded_voltages(path: Path, segments: int) -> Voltages:
-    """Of a file; time begins as in the file. InputError for fewer channels than segments and for damaged numbers."""
+def read_voltages(path: Path, segments: int) -> Voltages:
+    """Read the voltages of a file; time begins as in the file. InputError for missing channels and damaged numbers."""
     import pandas as pd
 
     where = f"recording '{path}'"
@@ -41,17 +41,17 @@ def recorded_voltages(path: Path, segments: int) -> Voltages:
     if not np.isfinite(numbers).all():
         row, column = np.argwhere(~np.isfinite(numbers))[0]
         raise InputError(f"{where}: {['time_s', *wanted][column]} is not finite in line {row + 2}")
-    return _even(numbers[:, 0], numbers[:, 1:], where)
+    return _evenly_sampled(numbers[:, 0], numbers[:, 1:], where)
 
 
-def _even(time: np.ndarray, voltage: np.ndarray, where: str) -> Voltages:
-    """At even times. InputError where they are far from it."""
+def _evenly_sampled(time: np.ndarray, voltage: np.ndarray, where: str) -> Voltages:
+    """The voltages with evenly spaced times. InputError where the samples are far from them."""
     step = (time[-1] - time[0]) / (len(time) - 1)
     even = time[0] + step * np.arange(len(time))
     if step <= 0.0 or (np.diff(time) <= 0.0).any():
         raise InputError(f"{where}: time_s must rise from line to line")
     worst = int(np.argmax(np.abs(time - even)))
-    if abs(time[worst] - even[worst]) > UNEVEN * step:
+    if abs(time[worst] - even[worst]) > MOST_UNEVEN_SHARE * step:
         raise InputError(
             f"{where}: time_s = {time[worst]:g} in line {worst + 2}: samples must be evenly spaced, {step:.4g} s apart"
         )

@@ -1,4 +1,4 @@
-"""What was read beside what was written: cells and characters aligned, rates with their intervals, confusions.
+"""The score of a reading: cells and characters aligned with the true ones, rates with their intervals, confusions.
 
 Aligned by the least number of insertions, deletions and substitutions (Levenshtein, Soviet Physics Doklady 10 (1966)
 707), within a band around the diagonal: a track slips by a few cells, not by hundreds.
@@ -12,13 +12,14 @@ from diagnose.statistics.proportions import wilson_interval
 from foundation.arrays import Ints
 from softdot.reading.cells import DOTS, braille, text_of
 
-BAND = 40
+BAND_CELLS = 40
+"""Half width of the band around the diagonal."""
 Pair = tuple[int | None, int | None]
 
 
-def aligned(true: Sequence[Hashable], read: Sequence[Hashable]) -> list[Pair]:
-    """Places of what belongs together in both, in order; None for what the other lacks."""
-    half = BAND + abs(len(true) - len(read))
+def align(true: Sequence[Hashable], read: Sequence[Hashable]) -> list[Pair]:
+    """Pairs of places in both sequences that correspond, in order; None for a place that the other sequence lacks."""
+    half = BAND_CELLS + abs(len(true) - len(read))
     far = len(true) + len(read) + 1
     cost: list[dict[int, int]] = [{j: j for j in range(min(half, len(read)) + 1)}]
     for i, one in enumerate(true, 1):
@@ -30,10 +31,11 @@ def aligned(true: Sequence[Hashable], read: Sequence[Hashable]) -> list[Pair]:
                 new = min(new, row.get(j - 1, far) + 1, above.get(j - 1, far) + (one != read[j - 1]))
             row[j] = new
         cost.append(row)
-    return _way_back(cost, true, read, far)
+    return _trace_back(cost, true, read, far)
 
 
-def _way_back(cost: list[dict[int, int]], true: Sequence[Hashable], read: Sequence[Hashable], far: int) -> list[Pair]:
+def _trace_back(cost: list[dict[int, int]], true: Sequence[Hashable], read: Sequence[Hashable], far: int) -> list[Pair]:
+    """The pairs along the cheapest way through the table of costs."""
     i, j = len(true), len(read)
     pairs: list[Pair] = []
     while i or j:
@@ -51,8 +53,8 @@ def _way_back(cost: list[dict[int, int]], true: Sequence[Hashable], read: Sequen
 
 
 def rate(true: Sequence[Hashable], read: Sequence[Hashable]) -> dict[str, Any]:
-    """Share that was read, with Wilson's 95 % interval: all but the errors, of which what was added is one too."""
-    pairs = aligned(true, read)
+    """Share of the elements that was read, with Wilson's 95 % interval; an added element counts as an error too."""
+    pairs = align(true, read)
     errors = sum(i is None or j is None or true[i] != read[j] for i, j in pairs)
     right = max(0, len(true) - errors)
     low, high = wilson_interval(right, len(true))
@@ -62,12 +64,12 @@ def rate(true: Sequence[Hashable], read: Sequence[Hashable]) -> dict[str, Any]:
 def scores(true: Ints, read: Ints, table: str | None) -> dict[str, Any]:
     """Text read, rates of cells, characters and words, confusions, and errors by the number of the dot.
 
-    Characters and words are compared with the text of the true cells: where two signs have the same cells, the reader
-    is not at fault.
+    Characters and words are compared with the text of the true cells: where two signs have the same cells, that is no
+    error of the reader.
     """
     written, found = text_of(true, table), text_of(read, table)
     cells, said = [int(one) for one in true], [int(one) for one in read]
-    pairs = aligned(cells, said)
+    pairs = align(cells, said)
     wrong = Counter((cells[i], said[j]) for i, j in pairs if i is not None and j is not None and cells[i] != said[j])
     missed, false = [0] * DOTS, [0] * DOTS
     for i, j in pairs:

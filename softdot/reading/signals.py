@@ -1,4 +1,4 @@
-"""The arrays of a reading: what signals.npz keeps, and what its page plays."""
+"""The arrays of a reading: those of signals.npz, and those that its page plays."""
 
 from typing import Any
 
@@ -9,20 +9,20 @@ from softdot.reading.cells import braille
 from softdot.reading.decoders.fitted import Track
 from softdot.reading.line import cell_pitch_mm, nominal_line
 from softdot.reading.line_reading import LineReading
-from softdot.reading.score import aligned
+from softdot.reading.score import align
 
 
-def signals(reading: LineReading) -> dict[str, Floats]:
+def signal_arrays(reading: LineReading) -> dict[str, Floats]:
     """The arrays of signals.npz.
 
-    cell_true is -1 where nobody knows it, cell_read -1 where a cell was missed; cells that were added have no row.
+    cell_true is -1 where it is not known, cell_read -1 where a cell was missed; added cells have no row.
     """
     pitch, first, true = cell_pitch_mm(reading.reader.standard), reading.first, reading.cells_true
-    heard = reading.heard
+    heard = reading.voltages
     if true is None:
         read, at, known = first.cells, first.passed_s, np.full(len(first.cells), -1)
     else:
-        pairs = aligned([int(one) for one in true], [int(one) for one in first.cells])
+        pairs = align([int(one) for one in true], [int(one) for one in first.cells])
         partner = {i: j for i, j in pairs if i is not None and j is not None}
         read = np.array([first.cells[partner[i]] if i in partner else -1 for i in range(len(true))])
         passed = [first.passed_s[partner[i]] if i in partner else np.nan for i in range(len(true))]
@@ -39,23 +39,23 @@ def signals(reading: LineReading) -> dict[str, Floats]:
 
 
 def _place_mm(reading: LineReading, pitch: float) -> Floats:
-    """Where the array's middle is: as simulated, else as it was tracked, from the first cell that was read."""
+    """Place (t,) of the array's middle from the first cell that was read: as simulated, else as tracked."""
     if reading.path is not None:
-        return np.interp(reading.heard.time_s, reading.path.time_s, reading.path.x_mm)
+        return np.interp(reading.voltages.time_s, reading.path.time_s, reading.path.x_mm)
     if isinstance(reading.seen, Track):
-        place = reading.seen.place_mm(reading.heard.time_s)
+        place = reading.seen.place_mm(reading.voltages.time_s)
         begin = reading.first.passed_s[0] if len(reading.first.passed_s) else reading.seen.passed_s[0]
-        return np.asarray(place - np.interp(begin, reading.heard.time_s, place))
+        return np.asarray(place - np.interp(begin, reading.voltages.time_s, place))
     assert reading.reader.presses is not None
-    return np.asarray(pitch * np.floor(reading.heard.time_s / reading.reader.presses.period_s))
+    return np.asarray(pitch * np.floor(reading.voltages.time_s / reading.reader.presses.period_s))
 
 
-def shown_signals(reading: LineReading) -> dict[str, Any]:
-    """What the page of a reading plays (export.array.reading_page), of a reading whose true cells are known.
+def page_signals(reading: LineReading) -> dict[str, Any]:
+    """The arrays that the page of a reading plays (export.array.reading_page); the true cells must be known.
 
     The dots are those of the line, with their heights; of a recording those that the standard has for its cells.
     """
-    kept, true = signals(reading), reading.cells_true
+    kept, true = signal_arrays(reading), reading.cells_true
     assert true is not None
     line = nominal_line(true, reading.reader.standard) if reading.line is None else reading.line
     height = reading.reader.standard.nominal_mm("height_mm")
@@ -65,7 +65,7 @@ def shown_signals(reading: LineReading) -> dict[str, Any]:
     at = (
         np.interp(number, number[passed], kept["read_time_s"][passed])
         if passed.any()
-        else number * reading.heard.step_s
+        else number * reading.voltages.step_s
     )
     return {
         **{name: kept[name] for name in ("time_s", "voltage_V", "position_mm")},

@@ -1,4 +1,4 @@
-"""What a study of reading asks: one condition after the other away from the usual ones, or all together."""
+"""The plan of a study of reading: one condition after the other away from the base, or all combinations."""
 
 import itertools
 import json
@@ -19,25 +19,25 @@ from softdot.reading.cells import cells_of
 from softdot.reading.conditions import BOUNDS, ReadingConditions, standard_of
 from softdot.reading.decoders import named_decoders
 
-USUAL_TEXT = (
+DEFAULT_TEXT = (
     "soft dots, read by touch: the quick brown fox jumps over the lazy dog, packs five dozen liquor jugs, and leaves "
     "at 7.45 for Vienna; who knows why? Six big quartz vaults, one jolly wizard."
 )
 MOST_READINGS = 20_000
 MOST_CELLS = 2_000_000
-"""Of all readings together: a core reads about a hundred cells a second, so that these take hours."""
+"""Most cells of all readings together: a core reads about a hundred cells a second, so that these take hours."""
 BaseConditions = create_model(
     "BaseConditions",
     __base__=Table,
     **{name: (kind | None, None) for name, kind in get_type_hints(ReadingConditions).items()},
 )  # type: ignore[call-overload]
-"""[base] : the conditions that differ from those of the command line."""
+"""The table [base]: conditions that differ from those of the command line."""
 
 
 class StudyTables(Table):
-    """A file of conditions."""
+    """The content of a file of conditions."""
 
-    text: str = Field(USUAL_TEXT, description="what is read")
+    text: str = Field(DEFAULT_TEXT, description="what is read")
     table: str | None = Field(None, description="a table of liblouis; none: plain English")
     decoder: str = Field("model", description="one or several, as --decoders; the first decides")
     repeats: int = Field(2, ge=1, le=100, description="seeds for each condition, counted together")
@@ -49,15 +49,16 @@ class StudyTables(Table):
 
 @dataclass(frozen=True)
 class ReadingStudy:
-    """axes : condition -> values; combine : every combination of them, else one after the other beside the base.
+    """The plan of a study of reading.
 
-    decoder : one or several, as --decoders; the first decides. accuracy : share of the characters that must be read;
-    repeats : seeds for each condition, whose characters are counted together.
+    axes : condition -> values. combine : every combination of them, else one after the other beside the base. decoder :
+    one or several, as --decoders; the first decides. accuracy : share of the characters that must be read. repeats :
+    seeds for each condition, whose characters are counted together.
     """
 
     base: ReadingConditions
     axes: Mapping[str, tuple[float, ...]]
-    text: str = USUAL_TEXT
+    text: str = DEFAULT_TEXT
     table: str | None = None
     decoder: str = "model"
     repeats: int = 2
@@ -65,8 +66,8 @@ class ReadingStudy:
     combine: bool = False
 
 
-def usual_axes(kernel: ArrayKernel, base: ReadingConditions) -> dict[str, tuple[float, ...]]:
-    """What a study varies where no file says so. Heights are below the nominal one of the standard."""
+def default_axes(kernel: ArrayKernel, base: ReadingConditions) -> dict[str, tuple[float, ...]]:
+    """The axes of a study where no file states any. Heights are below the nominal one of the standard."""
     nominal = standard_of(kernel, base.standard).nominal_mm("height_mm", "--standard")
     below = tuple(round(nominal - share * float(kernel.depth_mm[-1]), 4) for share in (0.0, 0.15, 0.3, 0.45, 0.6))
     return {
@@ -80,7 +81,7 @@ def usual_axes(kernel: ArrayKernel, base: ReadingConditions) -> dict[str, tuple[
 
 
 def load_study(path: Path, kernel: ArrayKernel, base: ReadingConditions) -> ReadingStudy:
-    """Of a TOML file. InputError for a key, an axis or a value that is not allowed."""
+    """Read the plan of a study from a TOML file. InputError for a key, an axis or a value that is not allowed."""
     where = f"conditions '{path}'"
     try:
         tables = parse_toml(read_text(path, where), str(path))
@@ -88,23 +89,24 @@ def load_study(path: Path, kernel: ArrayKernel, base: ReadingConditions) -> Read
     except ValidationError as error:
         raise InputError(f"{where}: {sentence(error, tables, StudyTables)}") from None
     changed = replace(base, **asked.base.model_dump(exclude_unset=True))
-    axes = dict(asked.axes) or usual_axes(kernel, changed)
+    axes = dict(asked.axes) or default_axes(kernel, changed)
     given = {name: getattr(asked, name) for name in ("text", "table", "decoder", "repeats", "accuracy", "combine")}
     study = ReadingStudy(changed, axes, **given)
-    _check(study, where)
+    _refuse_bad_study(study, where)
     return study
 
 
-def _check(study: ReadingStudy, where: str) -> None:
+def _refuse_bad_study(study: ReadingStudy, where: str) -> None:
+    """InputError for an axis, a value, a decoder or a number of readings that is not allowed."""
     for name, values in study.axes.items():
         if name not in BOUNDS:
             raise InputError(f"{where}: axes.{name} is no condition with a number; known are {', '.join(BOUNDS)}")
         if not values:
             raise InputError(f"{where}: axes.{name} = []: needs at least one value")
         for value in values:
-            with_value(study.base, name, value)
+            with_condition(study.base, name, value)
     named_decoders(study.decoder)
-    if (count := len(points(study)) * study.repeats) > MOST_READINGS:
+    if (count := len(study_points(study)) * study.repeats) > MOST_READINGS:
         raise InputError(f"{where}: has {count} readings, at most {MOST_READINGS} are allowed")
     cells = len(cells_of(study.text, study.table))
     if cells * count > MOST_CELLS:
@@ -114,23 +116,23 @@ def _check(study: ReadingStudy, where: str) -> None:
         )
 
 
-def points(study: ReadingStudy) -> list[ReadingConditions]:
-    """All conditions that the axes ask for, the usual ones first."""
+def study_points(study: ReadingStudy) -> list[ReadingConditions]:
+    """All conditions that the axes ask for, those of the base first."""
     if study.combine:
         grid = itertools.product(*study.axes.values())
         changes: list[dict[str, Any]] = [dict(zip(study.axes, values, strict=True)) for values in grid]
         found = [replace(study.base, **change) for change in changes]
     else:
-        found = [with_value(study.base, name, one) for name, values in study.axes.items() for one in values]
+        found = [with_condition(study.base, name, one) for name, values in study.axes.items() for one in values]
     return list(dict.fromkeys([study.base, *found]))
 
 
-def with_value(conditions: ReadingConditions, name: str, value: float) -> ReadingConditions:
-    """With another value of one condition. InputError for one out of bounds."""
+def with_condition(conditions: ReadingConditions, name: str, value: float) -> ReadingConditions:
+    """The conditions with another value of one of them. InputError for a value out of bounds."""
     changed: dict[str, Any] = {name: value}
     return replace(conditions, **changed)
 
 
-def repeated(study: ReadingStudy, conditions: ReadingConditions) -> list[ReadingConditions]:
-    """The conditions with the seed of each repeat."""
+def repeats_of(study: ReadingStudy, conditions: ReadingConditions) -> list[ReadingConditions]:
+    """The conditions of every repeat, which differ by their seed."""
     return [replace(conditions, seed=conditions.seed + number) for number in range(study.repeats)]

@@ -1,7 +1,7 @@
-"""How far each condition of reading may go.
+"""The limit of each condition of reading.
 
-The limit of a condition is where fewer characters than promised are read; it is bracketed by the values of the axis,
-beyond them by doubling the distance, and then halved.
+At the limit, fewer characters than promised are read; it is bracketed by the values of the axis, beyond them by
+doubling the distance, and then halved.
 """
 
 from collections.abc import Iterator
@@ -11,20 +11,20 @@ from typing import Any
 import numpy as np
 
 from softdot.reading.conditions import BOUNDS, ReadingConditions
-from softdot.reading.study import ReadingStudy, repeated
+from softdot.reading.study import ReadingStudy, repeats_of
 
 HALVINGS, DOUBLINGS = 4, 3
 
 
 @dataclass
 class Readings:
-    """What is known: for each condition of a study the characters that were right, and of how many."""
+    """The readings of a study so far: for each condition the number of right characters, and of all."""
 
     records: dict[ReadingConditions, dict[str, Any]] = field(default_factory=dict)
 
     def share(self, study: ReadingStudy, conditions: ReadingConditions) -> float | None:
-        """Of the characters, over all repeats; None where a reading was refused."""
-        found = [self.records[one] for one in repeated(study, conditions)]
+        """The share of the characters that was read, over all repeats; None where a reading was refused."""
+        found = [self.records[one] for one in repeats_of(study, conditions)]
         if any(one["status"] != "read" for one in found):
             return None
         return float(sum(one["right"] for one in found) / sum(one["of"] for one in found))
@@ -32,8 +32,9 @@ class Readings:
 
 @dataclass(frozen=True)
 class ConditionLimit:
-    """good : the farthest value that is still read, None where the usual one is not; bad : the nearest that is not.
+    """The limit of one condition as far as it is known.
 
+    good : the farthest value that is still read, None where the usual one is not. bad : the nearest value that is not.
     following : the value to be read next, None where the limit is as narrow as was asked.
     """
 
@@ -43,7 +44,7 @@ class ConditionLimit:
 
 
 def limits_of(study: ReadingStudy, readings: Readings) -> Iterator[tuple[str, ConditionLimit]]:
-    """How far each condition may go, as far as is known."""
+    """The limit of each condition, as far as it is known, by name."""
     for name, values in study.axes.items():
         start = getattr(study.base, name)
         usual = values[0] if start is None else start
@@ -54,7 +55,7 @@ def limits_of(study: ReadingStudy, readings: Readings) -> Iterator[tuple[str, Co
 
 
 def _limit(study: ReadingStudy, readings: Readings, name: str, ahead: list[float]) -> ConditionLimit:
-    """By all readings of this condition at and behind its usual value."""
+    """The limit of one condition, from all readings at its usual value and on the way ahead."""
     start, sign = ahead[0], 1.0 if ahead[-1] >= ahead[0] else -1.0
     known: dict[float, bool] = {}
     for conditions in {replace(one, seed=study.base.seed) for one in readings.records}:

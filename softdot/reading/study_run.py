@@ -1,4 +1,4 @@
-"""A study of reading on all cores: its folder, which keeps what was read, its table and its picture."""
+"""A study of reading on all cores: its folder, which keeps the readings, its table and its picture."""
 
 import csv
 import logging
@@ -16,10 +16,10 @@ from softdot.output import Product, check_output
 from softdot.progress import Logged, Progress
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.decoders import named_decoders
-from softdot.reading.kernels import opened_kernel, readout_of
-from softdot.reading.study import ReadingStudy, points, repeated, with_value
-from softdot.reading.study_limits import Readings, limits_of
-from softdot.reading.study_task import StudyTask, keep, kept, kernel_hash, read_task
+from softdot.reading.kernels import open_kernel, readout_of
+from softdot.reading.study import ReadingStudy, repeats_of, study_points, with_condition
+from softdot.reading.study_limits import ConditionLimit, Readings, limits_of
+from softdot.reading.study_task import StudyTask, kernel_hash, read_task, store_record, stored_record
 from softdot.version import installed_version
 
 FOLDER, TABLE, PICTURE = "conditions", "reading_study.csv", "reading_study.png"
@@ -38,17 +38,17 @@ def run_reading_study(
     progress: Progress | None = None,
     scheduler: str | None = None,
 ) -> dict[str, Any]:
-    """Read under all conditions of a study into the folder out and return what reading_study.json says. InputError.
+    """Read under all conditions of a study into the folder out; the content of reading_study.json. InputError.
 
-    On one process per core, as many as workers, or on the Dask cluster of a scheduler, whose workers find the kernel
-    under the same path. Readings of an earlier study in out are not made again.
+    The work is done by one process per core, by as many as workers, or by the Dask cluster of a scheduler, whose
+    workers find the kernel under the same path. Readings of an earlier study in out are not made again.
     """
     from foundation.scratch_folders import lock_folder
     from softdot.executors import executor_for
 
     progress = progress or Logged()
-    kernel = opened_kernel(kernel_folder, config)
-    study.base.resolved(kernel)
+    kernel = open_kernel(kernel_folder, config)
+    study.base.with_implied_values(kernel)
     place = check_output(out, STUDY)
     (place / FOLDER).mkdir(parents=True, exist_ok=True)
     held = lock_folder(place)
@@ -58,12 +58,14 @@ def run_reading_study(
         if not (place / STUDY.summary).exists():
             write_json(place / STUDY.summary, {"format": STUDY.format, "complete": False})
         work = _Work(study, kernel_folder, place / FOLDER, readout_of(kernel, config).model_dump_json(), progress)
-        LOG.info("%d conditions, each read %d times; then what their limits ask for", len(points(study)), study.repeats)
+        LOG.info(
+            "%d conditions, each read %d times; then what their limits ask for", len(study_points(study)), study.repeats
+        )
         with executor_for(scheduler, workers) as executor:
             progress.stage("read")
-            work.done(executor, points(study))
-            while following := work.following():
-                work.done(executor, following)
+            work.read_all(executor, study_points(study))
+            while following := work.next_conditions():
+                work.read_all(executor, following)
         summary: dict[str, Any] = plain(_summary(study, work.readings, kernel))
         _write_csv(summary["readings"], place / TABLE)
         _draw(summary, place / PICTURE)
@@ -74,40 +76,42 @@ def run_reading_study(
 
 
 class _Work:
-    """The readings of a study: those of an earlier one, and what is missing by an executor."""
+    """The readings of a study: stored ones, and missing ones by an executor."""
 
     def __init__(self, study: ReadingStudy, kernel: Path, folder: Path, readout: str, progress: Progress) -> None:
         self.readings = Readings()
         self._study, self._kernel, self._folder, self._readout = study, kernel, folder, readout
         self._hash, self._progress = kernel_hash(kernel), progress
 
-    def following(self) -> list[ReadingConditions]:
-        """What the limits ask for next; nothing where every combination is read."""
+    def next_conditions(self) -> list[ReadingConditions]:
+        """The conditions that the limits ask for next; none where every combination is read."""
         if self._study.combine:
             return []
         limits = dict(limits_of(self._study, self.readings))
         return [
-            with_value(self._study.base, name, limit.following)
+            with_condition(self._study.base, name, limit.following)
             for name, limit in limits.items()
             if limit.following is not None
         ]
 
-    def done(self, executor: Executor, wanted: list[ReadingConditions]) -> None:
-        """Read under these conditions, with all repeats."""
+    def read_all(self, executor: Executor, wanted: list[ReadingConditions]) -> None:
+        """Read under these conditions, with all repeats, what is not stored yet."""
         from softdot.sweeps.points import records_as_completed
 
-        tasks = {task.key(self._hash): task for one in wanted for task in map(self._task, repeated(self._study, one))}
+        tasks = {
+            task.hash_key(self._hash): task for one in wanted for task in map(self._task, repeats_of(self._study, one))
+        }
         count = len(self.readings.records) + len(tasks)
         missing = {}
         for key, task in tasks.items():
-            if (found := kept(self._folder, key)) is None:
+            if (found := stored_record(self._folder, key)) is None:
                 missing[key] = task
             else:
                 self.readings.records[task.conditions] = found
         self._progress.step(len(self.readings.records), count, "")
         for key, record in records_as_completed(executor, read_task, {key: (task,) for key, task in missing.items()}):
             if record["status"] in ("read", "refused"):
-                keep(self._folder, key, missing[key], record)
+                store_record(self._folder, key, missing[key], record)
             self.readings.records[missing[key].conditions] = record
             self._progress.step(len(self.readings.records), count, record["reason"] or "")
 
@@ -119,7 +123,7 @@ class _Work:
 def _summary(study: ReadingStudy, readings: Readings, kernel: ArrayKernel) -> dict[str, Any]:
     rows = []
     for conditions in dict.fromkeys(replace(one, seed=study.base.seed) for one in readings.records):
-        found = [readings.records[one] for one in repeated(study, conditions)]
+        found = [readings.records[one] for one in repeats_of(study, conditions)]
         row: dict[str, Any] = {
             "conditions": conditions.as_dict(),
             "status": "read",
@@ -131,19 +135,15 @@ def _summary(study: ReadingStudy, readings: Readings, kernel: ArrayKernel) -> di
         if failed is not None:
             row |= {"status": failed["status"], "reason": failed["reason"]}
         else:
-            row["character_accuracy"] = _counted(found)
+            row["character_accuracy"] = _pooled_accuracy(found)
             row["decoders"] = {
-                name: _counted([one["decoders"][name] for one in found]) for name in named_decoders(study.decoder)
+                name: _pooled_accuracy([one["decoders"][name] for one in found])
+                for name in named_decoders(study.decoder)
             }
             row["word_accuracy"] = sum(one["accuracy"]["word"] for one in found) / len(found)
         rows.append(row)
-    limits = {} if study.combine else {
-        name: {
-            "read_up_to": limit.good,
-            "fails_at": limit.bad,
-            "refused": limit.bad is not None and readings.share(study, with_value(study.base, name, limit.bad)) is None,
-        } for name, limit in limits_of(study, readings)
-    }  # fmt: skip
+    limits = {} if study.combine else {name: _limit_row(study, readings, name, limit)
+                                       for name, limit in limits_of(study, readings)}  # fmt: skip
     return {
         "format": STUDY.format,
         "complete": True,
@@ -155,7 +155,7 @@ def _summary(study: ReadingStudy, readings: Readings, kernel: ArrayKernel) -> di
         "repeats": study.repeats,
         "accuracy": study.accuracy,
         "combine": study.combine,
-        "base": study.base.resolved(kernel).as_dict(),
+        "base": study.base.with_implied_values(kernel).as_dict(),
         "axes": {name: list(values) for name, values in study.axes.items()},
         "limits": limits,
         "readings": rows,
@@ -163,8 +163,14 @@ def _summary(study: ReadingStudy, readings: Readings, kernel: ArrayKernel) -> di
     }
 
 
-def _counted(found: list[dict[str, Any]]) -> dict[str, Any]:
-    """Characters that were right of all repeats together, with Wilson's 95 % interval."""
+def _limit_row(study: ReadingStudy, readings: Readings, name: str, limit: ConditionLimit) -> dict[str, Any]:
+    """The limit of a condition as reading_study.json holds it."""
+    refused = limit.bad is not None and readings.share(study, with_condition(study.base, name, limit.bad)) is None
+    return {"read_up_to": limit.good, "fails_at": limit.bad, "refused": refused}
+
+
+def _pooled_accuracy(found: list[dict[str, Any]]) -> dict[str, Any]:
+    """The share of right characters in all repeats together, with Wilson's 95 % interval."""
     from diagnose.statistics.proportions import wilson_interval
 
     right, of = sum(one["right"] for one in found), sum(one["of"] for one in found)
@@ -173,7 +179,7 @@ def _counted(found: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def _write_csv(rows: list[dict[str, Any]], path: Path) -> None:
-    """One row for each condition, with the rates of the first decoder and those of each by its name."""
+    """Write a row for each condition, with the rates of the first decoder and those of each by its name."""
     names, told = list(rows[0]["conditions"]), ("value", "low", "high", "of")
     decoders = list(dict.fromkeys(name for row in rows for name in row["decoders"]))
     with path.open("w", newline="", encoding="utf-8") as file:

@@ -17,8 +17,8 @@ from softdot.reading.cells import cells_of, text_of
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.decoders import named_decoders
 from softdot.reading.decoders.onset import NoDotError
-from softdot.reading.kernels import opened_kernel
-from softdot.reading.line_reading import content, read_line
+from softdot.reading.kernels import open_kernel
+from softdot.reading.line_reading import read_line, reading_content
 from solve.model import Readout
 
 RATES = ("cell", "character", "word")
@@ -26,7 +26,7 @@ RATES = ("cell", "character", "word")
 
 @dataclass(frozen=True)
 class StudyTask:
-    """One reading of a study."""
+    """One reading of a study, with the folder of its kernel and its read-out as JSON."""
 
     folder: str
     readout: str
@@ -35,20 +35,20 @@ class StudyTask:
     table: str | None
     decoder: str
 
-    def key(self, kernel_hash: str) -> str:
-        """Of all it depends on, the program among it."""
+    def hash_key(self, kernel_hash: str) -> str:
+        """The hash of everything that the reading depends on, the program included."""
         told = {**asdict(self), "folder": kernel_hash, "program": source_hash(__name__)}
         return sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
 
 
 def kernel_hash(folder: Path) -> str:
-    """Of both files of a kernel."""
+    """The hash of both files of a kernel."""
     return sha256(b"".join((folder / name).read_bytes() for name in (NPZ, JSON))).hexdigest()
 
 
 @lru_cache(maxsize=1)
 def _kernel(folder: str) -> ArrayKernel:
-    return opened_kernel(Path(folder))
+    return open_kernel(Path(folder))
 
 
 def read_task(task: StudyTask) -> dict[str, Any]:
@@ -64,23 +64,23 @@ def read_task(task: StudyTask) -> dict[str, Any]:
         return {"status": "read", "reason": None, **nothing, "text_read": "", "decoders": dict.fromkeys(names, nothing)}
     except InputError as error:
         return {"status": "refused", "reason": str(error)}
-    told = content(reading, task.text, task.table)
-    decoders = {name: _numbers(own) for name, own in told["decoders"].items()}
+    told = reading_content(reading, task.text, task.table)
+    decoders = {name: _decoder_record(own) for name, own in told["decoders"].items()}
     first = decoders[told["decoder"]]
     return {"status": "read", "reason": None, **first, "text_read": told["text_read"], "decoders": decoders}
 
 
-def _numbers(told: Mapping[str, Any]) -> dict[str, Any]:
-    """Of one decoder: characters that were right, of how many, and all rates."""
+def _decoder_record(told: Mapping[str, Any]) -> dict[str, Any]:
+    """The record of one decoder: right characters, all characters, and all rates."""
     counts = {name: told["character_accuracy"][name] for name in ("right", "of")}
     return {**counts, "accuracy": {name: told[f"{name}_accuracy"]["value"] for name in RATES}}
 
 
-def kept(folder: Path, key: str) -> dict[str, Any] | None:
-    """The record of an earlier reading."""
+def stored_record(folder: Path, key: str) -> dict[str, Any] | None:
+    """The record of an earlier reading, None where there is none."""
     return read_checked(folder / f"{key}.json", "it is read again")
 
 
-def keep(folder: Path, key: str, task: StudyTask, record: dict[str, Any]) -> None:
-    """Write a record, whole or not at all."""
+def store_record(folder: Path, key: str, task: StudyTask, record: dict[str, Any]) -> None:
+    """Write the record of a reading, whole or not at all."""
     write_checked(folder / f"{key}.json", {**record, "conditions": asdict(task.conditions)})

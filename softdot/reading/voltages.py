@@ -1,4 +1,4 @@
-"""From a path over a line to the voltages that are recorded: the kernel's charges, the read-out, noise and hum."""
+"""The recorded voltages of a path over a line: the kernel's charges, the read-out, noise and hum."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -11,37 +11,37 @@ from geometry.braille_standards import BrailleStandard
 from softdot.arrays.kernel import ArrayKernel
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.line import DotLine
-from softdot.reading.motion import CHUNK, ArrayPath, PressTimes, near
+from softdot.reading.motion import CHUNK_TIMES, ArrayPath, PressTimes, dots_near
 from solve.model import Readout
 from solve.physics import Physics
 from solve.readout.amplifier import amplify, input_of
 
-MAINS_HZ, LEAST_PERIODS = 50.0, 50
-FINEST_MM = 0.02
-"""The read-out is integrated in steps of at most this path: within one the charge is linear."""
+MAINS_HZ, LEAST_MAINS_PERIODS = 50.0, 50
+READOUT_STEP_MM = 0.02
+"""Longest way in a step of the integration of the read-out: within one the charge is linear."""
 Step = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
 class Voltages:
-    """What was recorded: voltage_V (t, n) of the segments at evenly spaced time_s (t,)."""
+    """Voltages of the segments, voltage_V (t, n), at evenly spaced times time_s (t,)."""
 
     time_s: Floats
     voltage_V: Floats
 
     @property
     def step_s(self) -> float:
-        """From one sample to the next."""
+        """Time from one sample to the next, s."""
         return float(self.time_s[-1] - self.time_s[0]) / (len(self.time_s) - 1)
 
 
 @dataclass(frozen=True)
 class Reader:
-    """All that a decoder may know: the kernel, the nominal standard, the read-out, and whether the array slides.
+    """Everything that a decoder may know: the kernel, the nominal standard, the read-out, and the times of presses.
 
-    physics : what acts behind the film besides the read-out. presses : when it is set down, as told by the machine
-    that does it; None where it slides. passing : charges of dots that are passed, by offset and yaw, which decoders
-    keep here.
+    physics : effects behind the film besides the read-out. presses : times at which the array is set down, as its
+    machine tells them; None where it slides. passing : charges of passed dots by offset and yaw, which decoders keep
+    here.
     """
 
     kernel: ArrayKernel
@@ -53,27 +53,29 @@ class Reader:
 
 
 def charges_pC(kernel: ArrayKernel, line: DotLine, path: ArrayPath, told: Step | None = None) -> Floats:
-    """Charges (t, n) at the times of the path, of all dots that are near."""
+    """Charges (t, n) at the times of the path, from all dots that are near."""
     charge = np.empty((len(path.time_s), kernel.charge_pC.shape[-1]))
-    for begin in range(0, len(charge), CHUNK):
-        span = slice(begin, begin + CHUNK)
-        charge[span] = kernel.of_many(*near(kernel, line, path, span))[0]
+    for begin in range(0, len(charge), CHUNK_TIMES):
+        span = slice(begin, begin + CHUNK_TIMES)
+        charge[span] = kernel.of_many(*dots_near(kernel, line, path, span))[0]
         if told is not None:
-            told(min(begin + CHUNK, len(charge)), len(charge))
+            told(min(begin + CHUNK_TIMES, len(charge)), len(charge))
     return charge
 
 
-def alone_pC(kernel: ArrayKernel, line: DotLine, path: ArrayPath) -> Floats:
-    """Charges (t, n) if no dot felt another one: the sum of what each would give alone."""
+def charges_of_lone_dots_pC(kernel: ArrayKernel, line: DotLine, path: ArrayPath) -> Floats:
+    """Charges (t, n) if no dot felt another one: the sum of those that each would give alone."""
     charge = np.empty((len(path.time_s), kernel.charge_pC.shape[-1]))
-    for begin in range(0, len(charge), CHUNK):
-        span = slice(begin, begin + CHUNK)
-        x, y, depth = near(kernel, line, path, span)
+    for begin in range(0, len(charge), CHUNK_TIMES):
+        span = slice(begin, begin + CHUNK_TIMES)
+        x, y, depth = dots_near(kernel, line, path, span)
         charge[span] = kernel.of_one(x, y, depth)[0].sum(axis=1)
     return charge
 
 
-def behind_readout(reader: Reader, time_s: Floats, charge_pC: Floats, at_s: Floats, finest_s: float = np.inf) -> Floats:
+def readout_voltages(
+    reader: Reader, time_s: Floats, charge_pC: Floats, at_s: Floats, finest_s: float = np.inf
+) -> Floats:
     """Voltages (m, n) at evenly spaced at_s (m,), each electrode with its own capacitance (solve.readout.amplifier).
 
     Between the times of the charges (t, n) these follow a cubic spline, which the read-out sees in steps of at most
@@ -93,7 +95,7 @@ def behind_readout(reader: Reader, time_s: Floats, charge_pC: Floats, at_s: Floa
     return np.stack(voltages, axis=1)
 
 
-def recorded(
+def record_voltages(
     reader: Reader,
     line: DotLine,
     path: ArrayPath,
@@ -101,11 +103,11 @@ def recorded(
     random: np.random.Generator,
     told: Step | None = None,
 ) -> Voltages:
-    """The voltages of a path over a line with white noise and hum, as they are sampled."""
+    """The sampled voltages of a path over a line, with white noise and hum."""
     charge = charges_pC(reader.kernel, line, path, told)
     count = int((path.time_s[-1] - path.time_s[0]) * conditions.sampling_Hz)
     time = path.time_s[0] + np.arange(count) / conditions.sampling_Hz
-    clean = behind_readout(reader, path.time_s, charge, time, FINEST_MM / conditions.speed_mm_per_s)
+    clean = readout_voltages(reader, path.time_s, charge, time, READOUT_STEP_MM / conditions.speed_mm_per_s)
     noise = 1e-3 * conditions.noise_mV * random.standard_normal(clean.shape)
     phase = 2.0 * np.pi * random.random()
     hum = 1e-3 * conditions.hum_mV * np.sin(2.0 * np.pi * MAINS_HZ * time + phase)
@@ -113,11 +115,11 @@ def recorded(
 
 
 def without_mains(heard: Voltages) -> Voltages:
-    """Voltages less the sine of the mains that fits each channel best; as they are where they last less than a second.
+    """Voltages less the sine of the mains that fits each channel best; unchanged where they last less than a second.
 
-    Of a signal as long as T this takes what lies within about 1 / T of that frequency.
+    Of a signal of duration T this removes the frequencies within about 1 / T of the mains.
     """
-    if heard.time_s[-1] - heard.time_s[0] < LEAST_PERIODS / MAINS_HZ or heard.step_s > 0.4 / MAINS_HZ:
+    if heard.time_s[-1] - heard.time_s[0] < LEAST_MAINS_PERIODS / MAINS_HZ or heard.step_s > 0.4 / MAINS_HZ:
         return heard
     phase = 2.0 * np.pi * MAINS_HZ * heard.time_s
     waves = np.stack([np.sin(phase), np.cos(phase)], axis=1)
@@ -126,15 +128,15 @@ def without_mains(heard: Voltages) -> Voltages:
 
 
 def averaged_voltages(reader: Reader, time_s: Floats, charge_pC: Floats, like: Voltages, many: int) -> Voltages:
-    """Voltages of charges (t, n) at the samples of others, each the mean of so many."""
+    """Voltages of charges (t, n) at the samples of others, each the mean of `many` finer samples."""
     fine = like.step_s / many
     at = like.time_s[0] - 0.5 * (many - 1) * fine + fine * np.arange(many * len(like.time_s))
-    voltage = behind_readout(reader, time_s, charge_pC, at)
+    voltage = readout_voltages(reader, time_s, charge_pC, at)
     return Voltages(like.time_s, voltage.reshape(len(like.time_s), many, -1).mean(axis=1))
 
 
-def charge_again_pC(reader: Reader, heard: Voltages) -> Floats:
-    """Charges (t, n) that gave the voltages, from their first sample on: Q = C V + integral of V / R.
+def restored_charge_pC(reader: Reader, heard: Voltages) -> Floats:
+    """Charges (t, n) behind the voltages, from their first sample on: Q = C V + integral of V / R.
 
     The inverse of the input of the read-out; what its filters removed stays removed, and noise adds up.
     """

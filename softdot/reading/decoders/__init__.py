@@ -1,4 +1,4 @@
-"""The decoders by name, and what they see of the voltages."""
+"""The decoders by name, and their common input from the voltages."""
 
 from collections.abc import Callable
 
@@ -6,8 +6,8 @@ from foundation.errors import InputError
 from softdot.reading.decoders import learned, model, threshold
 from softdot.reading.decoders.fitted import Track
 from softdot.reading.decoders.model import DecodedCells
-from softdot.reading.decoders.pressing import PressedCells, pressed
-from softdot.reading.decoders.track import tracked
+from softdot.reading.decoders.pressing import PressedCells, pressed_cells
+from softdot.reading.decoders.track import track_slide
 from softdot.reading.voltages import Reader, Voltages, without_mains
 
 Decoder = Callable[[Reader, Track | PressedCells], DecodedCells]
@@ -19,7 +19,7 @@ DECODERS: dict[str, Decoder] = {
 
 
 def named_decoders(names: str) -> list[str]:
-    """Names of decoders, separated by commas. InputError for one that is none."""
+    """The names of decoders in a text, separated by commas. InputError for an unknown one."""
     found = list(dict.fromkeys(name.strip() for name in names.split(",")))
     for name in found:
         if name not in DECODERS:
@@ -27,7 +27,9 @@ def named_decoders(names: str) -> list[str]:
     return found
 
 
-def seen_of(reader: Reader, heard: Voltages) -> Track | PressedCells:
-    """What all decoders begin with. InputError where there is nothing to read."""
+def decoder_input(reader: Reader, heard: Voltages) -> Track | PressedCells:
+    """The input of all decoders: the track of a slide, or the charges of presses. InputError where there is nothing to
+    read.
+    """
     quiet = without_mains(heard)
-    return tracked(reader, quiet) if reader.presses is None else pressed(reader, quiet)
+    return track_slide(reader, quiet) if reader.presses is None else pressed_cells(reader, quiet)

@@ -1,7 +1,7 @@
-"""Decoder "threshold": a dot is there where the electrode under its place has charge, above one threshold.
+"""Decoder "threshold": a dot is raised where the charge of the electrode under its place is above one threshold.
 
-The charge of each electrode is that which gave its voltages, less its least value within a cell pitch. What the model
-knows of crosstalk, of neighbours and of shapes is not used; speed and place are those of the track.
+The charge of each electrode is restored from its voltages, less its least value within a cell pitch. Crosstalk,
+neighbours and shapes, which the model knows, are not used; speed and place are those of the track.
 """
 
 import numpy as np
@@ -10,21 +10,21 @@ from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from foundation.arrays import Floats
 from softdot.reading.cells import DOTS
 from softdot.reading.decoders.fitted import Track
-from softdot.reading.decoders.model import DecodedCells, trimmed
+from softdot.reading.decoders.model import DecodedCells, trim_blanks
 from softdot.reading.decoders.pressing import PressedCells
 from softdot.reading.line import cell_pitch_mm, cells_from, dot_places_mm
-from softdot.reading.voltages import Reader, charge_again_pC
+from softdot.reading.voltages import Reader, restored_charge_pC
 
-STEP_MM, PEAK_MM = 0.1, 1.0
-LARGE, HALF = 0.95, 0.5
-"""The threshold is half of what one of twenty places exceeds."""
+LEVEL_STEP_MM, PEAK_WIDTH_MM = 0.1, 1.0
+LARGE_QUANTILE, THRESHOLD_SHARE = 0.95, 0.5
+"""The threshold is half of the level that one of twenty places exceeds."""
 
 
 def decode(reader: Reader, seen: Track | PressedCells) -> DecodedCells:
-    """Cells whose electrodes are above the threshold."""
+    """The cells whose electrodes are above the threshold."""
     level = _pressed_levels(reader, seen) if isinstance(seen, PressedCells) else _slid_levels(reader, seen)
-    dots = level > HALF * np.quantile(level, LARGE)
-    return trimmed(cells_from(dots), seen.passed_s)
+    dots = level > THRESHOLD_SHARE * np.quantile(level, LARGE_QUANTILE)
+    return trim_blanks(cells_from(dots), seen.passed_s)
 
 
 def _pressed_levels(reader: Reader, seen: PressedCells) -> Floats:
@@ -34,19 +34,19 @@ def _pressed_levels(reader: Reader, seen: PressedCells) -> Floats:
 
 
 def _slid_levels(reader: Reader, seen: Track) -> Floats:
-    """Peaks (c, 6) of the charge as the dot passes under the electrodes of its row, mean of these."""
-    charge, place = charge_again_pC(reader, seen.heard), seen.place_mm(seen.heard.time_s)
-    grid = np.arange(place[0], place[-1], STEP_MM)
+    """Peaks (c, 6) of the charge as the dot passes under the electrodes of its row, their mean."""
+    charge, place = restored_charge_pC(reader, seen.heard), seen.place_mm(seen.heard.time_s)
+    grid = np.arange(place[0], place[-1], LEVEL_STEP_MM)
     pitch, dots = cell_pitch_mm(reader.standard), dot_places_mm(reader.standard)
     centres = reader.kernel.centres_mm
     middles = pitch * np.arange(len(seen.passed_s))
     level = np.zeros((len(middles), DOTS))
     for dot in range(DOTS):
         across = np.abs(centres[:, 1] - dots[dot, 1])
-        own = np.flatnonzero(across < across.min() + STEP_MM)
+        own = np.flatnonzero(across < across.min() + LEVEL_STEP_MM)
         for electrode in own:
             even = np.interp(grid, place, charge[:, electrode])
-            above = even - minimum_filter1d(even, round(pitch / STEP_MM) | 1)
-            peak = maximum_filter1d(above, round(PEAK_MM / STEP_MM) | 1)
+            above = even - minimum_filter1d(even, round(pitch / LEVEL_STEP_MM) | 1)
+            peak = maximum_filter1d(above, round(PEAK_WIDTH_MM / LEVEL_STEP_MM) | 1)
             level[:, dot] += np.interp(middles + dots[dot, 0] - centres[electrode, 0], grid, peak) / len(own)
     return level

@@ -1,5 +1,5 @@
-"""DESIGNS.toml: the configuration of an array, the axes along which it varies, and how the search goes on. [sweep] is
-that of softdot sweep and says what varies and which designs are tried first. [search] says what follows.
+"""DESIGNS.toml: the configuration of an array, the axes along which it varies, and the rules of the search. [sweep] is
+that of softdot sweep: it states what varies and which designs are tried first. [search] states what follows.
 """
 
 import json
@@ -31,7 +31,7 @@ class ComparedDesign(Table):
 
 
 class DesignSearch(Table):
-    """How a search goes on after the designs of [sweep]."""
+    """The rules by which a search goes on after the designs of [sweep]."""
 
     rounds: Annotated[int, Field(ge=0, le=100)] = Field(2, description="of designs that the search chooses")
     each: Annotated[int, Field(ge=1, le=100)] = Field(4, description="designs in each round")
@@ -58,7 +58,9 @@ class _SearchFile(Table):
 
 @dataclass(frozen=True)
 class TriedDesign:
-    """values : of the axes, or what a compared design sets. config : None for what has no configuration, and why."""
+    """A design that is tried. values : of the axes, or those that a compared design sets. config : None, with a reason,
+    for a design that has no configuration.
+    """
 
     name: str
     values: Mapping[str, Any]
@@ -68,7 +70,7 @@ class TriedDesign:
 
 @dataclass(frozen=True)
 class DesignRequest:
-    """What is asked for. base : tables of the configuration; text : of DESIGNS.toml as written."""
+    """The request of DESIGNS.toml. base : tables of the configuration. text : the file as written."""
 
     base: Mapping[str, Any]
     space: Space
@@ -85,28 +87,30 @@ class DesignRequest:
         ]
 
     def chosen(self, number: int, row: Sequence[Any]) -> TriedDesign:
-        """The design with these values of the axes; number : counted from 1 over all that the search tries."""
+        """The design with these values of the axes. number : counted from 1 over all designs of the search."""
         pairs = zip(self.space.sweep.axes, row, strict=True)
-        return tried(self.base, f"design {number}", {key: value for axis, value in pairs for key in axis.names()})
+        return design_with_values(
+            self.base, f"design {number}", {key: value for axis, value in pairs for key in axis.names()}
+        )
 
     def row(self, design: TriedDesign) -> list[Any]:
-        """Values of the axes of a design of the search."""
+        """The values of the axes for a design of the search."""
         return [design.values[axis.names()[0]] for axis in self.space.sweep.axes]
 
 
-def tried(base: Mapping[str, Any], name: str, values: Mapping[str, Any]) -> TriedDesign:
-    """The design with these values in the tables, or why it has no configuration. InputError for a key that leads
-    nowhere.
+def design_with_values(base: Mapping[str, Any], name: str, values: Mapping[str, Any]) -> TriedDesign:
+    """The design with these values in the tables, or the reason why it has no configuration. InputError for a key that
+    leads nowhere.
     """
-    tables = tables_of(base, values)
+    tables = tables_with_values(base, values)
     try:
         return TriedDesign(name, values, config_from(with_default_design(tables)))
     except InputError as error:
         return TriedDesign(name, values, None, str(error))
 
 
-def tables_of(base: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
-    """The tables of a configuration with these values, without what does not act beside them.
+def tables_with_values(base: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
+    """The tables of a configuration with these values, without keys that do not act beside them.
 
     InputError for a key that leads nowhere.
     """
@@ -129,13 +133,14 @@ def load_request(path: Path, settings: Sequence[str] = ()) -> DesignRequest:
         search = _search(tables)
         space = space_from({name: table for name, table in tables.items() if name != "search"})
     base = {name: table for name, table in tables.items() if name not in ("sweep", "search")}
-    compared = tuple(_compared(base, number, one) for number, one in enumerate(search.compared))
+    compared = tuple(_compared_design(base, number, one) for number, one in enumerate(search.compared))
     config = next(point.config for point in space.points if point.config is not None)
     ArrayCase(config).refuse_kernel()
     return DesignRequest(base, space, search, compared, path.read_text("utf-8-sig"))
 
 
 def _search(tables: Mapping[str, Any]) -> DesignSearch:
+    """The table [search]. InputError."""
     own = {"search": tables.get("search", {})}
     try:
         return _SearchFile.model_validate_json(json.dumps(own, default=str), strict=True).search
@@ -143,10 +148,11 @@ def _search(tables: Mapping[str, Any]) -> DesignSearch:
         raise InputError(sentence(error, own, _SearchFile)) from None
 
 
-def _compared(base: Mapping[str, Any], number: int, one: ComparedDesign) -> TriedDesign:
+def _compared_design(base: Mapping[str, Any], number: int, one: ComparedDesign) -> TriedDesign:
+    """A compared design. InputError where it has no configuration."""
     where = f"search.compared[{number}]"
     try:
-        found = tried(base, one.name, one.set)
+        found = design_with_values(base, one.name, one.set)
     except (InputError, ValueError) as error:
         raise InputError(f"{where}.set: {error}") from None
     if found.config is None:

@@ -1,8 +1,8 @@
 """One design: its kernel, coarse enough to be made in minutes, and the least force at which it reads a text.
 
-A depth is halved, in its logarithm, between the deepest that the kernel allows and a tenth of it. At each depth the
-text is read so often as was asked; a depth reads it where the share of the characters that were right, of all
-repeats together, is at least the accuracy. Force goes with depth, so that the least depth has the least force.
+The depth is bisected, in its logarithm, between the deepest that the kernel allows and a tenth of it. At each depth the
+text is read as often as asked; the depth suffices where the share of right characters, of all repeats together, is at
+least the accuracy. Force grows with depth, so that the least depth has the least force.
 """
 
 import time
@@ -26,23 +26,23 @@ from softdot.progress import Untold
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.decoders.onset import NoDotError
-from softdot.reading.kernels import checked_kernel, readout_of
+from softdot.reading.kernels import check_kernel, readout_of
 from softdot.reading.line_reading import LineReading, read_line
-from softdot.reading.motion import near
+from softdot.reading.motion import dots_near
 from softdot.reading.score import scores
 from softdot.version import installed_version
 
-COARSE = KernelDetail(coarser=4.0, steps=3, per_pitch=2)
-"""20 presses for a cell of six. docs/design_by_reading.md says how far it is from the usual kernel."""
-SHALLOWEST, HALVINGS = 0.1, 5
-"""Of the deepest depth; the least one is then known to 8 %."""
-EVERY = 5
-"""Of the states of a path, for its force."""
+COARSE_KERNEL = KernelDetail(coarser=4.0, steps=3, per_pitch=2)
+"""20 presses for a cell of six. docs/design_by_reading.md compares it with the usual kernel."""
+LEAST_DEPTH_SHARE, BISECTIONS = 0.1, 5
+"""Least depth as a share of the deepest one, and number of bisections, which give the least depth to 8 %."""
+FORCE_STRIDE = 5
+"""Stride through the states of a path for its force."""
 
 
 @dataclass(frozen=True)
 class DesignTask:
-    """One design and what is asked of it. decoder : its name; conditions : without a depth."""
+    """One design and the reading that is asked of it. decoder : its name. conditions : without a depth."""
 
     config: Config
     conditions: ReadingConditions
@@ -54,15 +54,15 @@ class DesignTask:
 
 
 class StoppedDesignError(RuntimeError):
-    """A press of a design's kernel did not converge: where and why."""
+    """Raised where a press of a design's kernel did not converge, with place and reason."""
 
 
 def design_record(task: DesignTask) -> dict[str, Any]:
-    """What a design gives: status as of a point of a sweep, its readings by depth, and the least of these. Raises
-    nothing.
+    """The record of a design: its status as of a point of a sweep, its readings by depth, and the least of these.
+    Raises nothing.
 
-    readings : each with depth, characters right and of how many, force, and crosstalk; least : the one with the
-    least depth at which enough characters are read, None where there is none.
+    readings : each with depth, right characters, all characters, force, and crosstalk. least : the one with the least
+    depth at which enough characters are read, None where there is none.
     """
     begun = time.perf_counter()
     try:
@@ -70,24 +70,24 @@ def design_record(task: DesignTask) -> dict[str, Any]:
         pressed_s = time.perf_counter() - begun
         found: dict[str, Any] = {"status": "solved", "reason": None, **least_force(kernel, task)}
     except InputError as error:
-        return _failed("refused", str(error), begun)
+        return _failure_record("refused", str(error), begun)
     except (StoppedDesignError, MeshingError) as error:
-        return _failed("not-converged", str(error), begun)
+        return _failure_record("not-converged", str(error), begun)
     except Exception as error:
-        return _failed("crashed", f"{type(error).__name__}: {error}", begun)
+        return _failure_record("crashed", f"{type(error).__name__}: {error}", begun)
     seconds = time.perf_counter() - begun
     return {**found, "kernel_s": pressed_s, "reading_s": seconds - pressed_s, "seconds": seconds}
 
 
-def _failed(status: str, reason: str, begun: float) -> dict[str, Any]:
+def _failure_record(status: str, reason: str, begun: float) -> dict[str, Any]:
     nothing: dict[str, Any] = {"readings": [], "least": None, "seconds": time.perf_counter() - begun}
     return {"status": status, "reason": " ".join(reason.split()), **nothing}
 
 
-def coarse_kernel(config: Config, detail: KernelDetail = COARSE) -> ArrayKernel:
-    """The kernel of a design by one process; presses that were solved before are kept.
+def coarse_kernel(config: Config, detail: KernelDetail = COARSE_KERNEL) -> ArrayKernel:
+    """The kernel of a design by one process; presses that were solved before are taken from the cache.
 
-    InputError for what cannot be built or read with, StoppedDesignError, MeshingError.
+    InputError for a design that cannot be built or read with, StoppedDesignError, MeshingError.
     """
     case = ArrayCase(config)
     case.warnings  # noqa: B018 - refuses
@@ -104,12 +104,14 @@ def coarse_kernel(config: Config, detail: KernelDetail = COARSE) -> ArrayKernel:
         "config": config.model_dump(mode="json"),
     }
     kernel = with_about(filled(grid, presses), case, case.capacitance_pF, [], said)
-    return checked_kernel(kernel, "the kernel of this design")
+    return check_kernel(kernel, "the kernel of this design")
 
 
 def least_force(kernel: ArrayKernel, task: DesignTask) -> dict[str, Any]:
-    """readings by depth and the least of them, as of design_record. InputError."""
-    deepest = replace(task.conditions, force_N=1.0).resolved(kernel).depth_mm  # that of the stop, at any force
+    """The readings by depth and the least of them, as in design_record. InputError."""
+    deepest = (
+        replace(task.conditions, force_N=1.0).with_implied_values(kernel).depth_mm
+    )  # that of the stop, at any force
     assert deepest is not None
     readings: list[dict[str, Any]] = []
     for depth_mm in depths(deepest, readings, task.accuracy):
@@ -120,19 +122,21 @@ def least_force(kernel: ArrayKernel, task: DesignTask) -> dict[str, Any]:
 
 
 def depths(deepest: float, readings: list[dict[str, Any]], accuracy: float) -> Iterator[float]:
-    """The deepest depth, and by what was read there the next ones; readings : filled between the steps."""
+    """The deepest depth, and then the next ones by the last reading. readings : filled by the caller between the
+    steps.
+    """
     yield deepest
-    low, high = SHALLOWEST * deepest, deepest
+    low, high = LEAST_DEPTH_SHARE * deepest, deepest
     if readings[-1]["accuracy"] < accuracy:
         return
-    for _ in range(HALVINGS):
+    for _ in range(BISECTIONS):
         middle = float(np.sqrt(low * high))
         yield middle
         low, high = (low, middle) if readings[-1]["accuracy"] >= accuracy else (middle, high)
 
 
 def reading_at(kernel: ArrayKernel, task: DesignTask, depth_mm: float) -> dict[str, Any]:
-    """The text at one depth: characters with Wilson's 95 % interval, force, crosstalk. InputError.
+    """The reading of the text at one depth: characters with Wilson's 95 % interval, force, crosstalk. InputError.
 
     Repeats end where the others cannot lift the share of the characters to the accuracy any more.
     """
@@ -171,12 +175,14 @@ def forces_N(kernel: ArrayKernel, reading: LineReading) -> Floats:
     assert path is not None
     assert line is not None
     begin, end = np.searchsorted(path.time_s, [path.reached_s[0], path.reached_s[-1]])
-    span = slice(int(begin), max(int(end), int(begin) + 1), EVERY)
-    return kernel.of_many(*near(kernel, line, path, span))[1]
+    span = slice(int(begin), max(int(end), int(begin) + 1), FORCE_STRIDE)
+    return kernel.of_many(*dots_near(kernel, line, path, span))[1]
 
 
 def crosstalk_percent(kernel: ArrayKernel, depth_mm: float) -> float:
-    """The largest open-circuit voltage of a segment over that of another one, over whose middle one dot presses."""
+    """Largest open-circuit voltage of a segment over that of another one, over whose middle a dot presses, in
+    percent.
+    """
     x, y = kernel.centres_mm.T
     voltage = kernel.of_one(x, y, np.full(len(x), depth_mm))[0] / kernel.capacitance_pF
     share = np.abs(voltage / np.diagonal(voltage)[:, None])

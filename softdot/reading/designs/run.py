@@ -1,4 +1,4 @@
-"""A search for designs on all cores: its folder, which keeps what was pressed and read, and its results."""
+"""The search for designs on all cores: its folder, which keeps what was pressed and read, and its results."""
 
 import json
 from collections.abc import Iterator
@@ -33,12 +33,12 @@ DESIGNS = Product(
     ),
 )  # fmt: skip
 ACCIDENTS = ("crashed", "lost")
-"""Not the fault of a design: it is tried again when the search is started again."""
+"""Failures that are not the design's: it is tried again when the search is started again."""
 
 
 @dataclass(frozen=True)
 class AskedReading:
-    """What every design reads, and with which decoder; conditions : without a depth or a force."""
+    """The reading that is asked of every design, and its decoder. conditions : without a depth or a force."""
 
     text: str
     table: str | None
@@ -57,19 +57,19 @@ class AskedReading:
 
 @dataclass
 class DesignRecords:
-    """designs : all that were tried, in order; records : by name of the design, as of design_record."""
+    """The tried designs, in order, and their records by name, as of design_record."""
 
     designs: list[TriedDesign] = field(default_factory=list)
     records: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     def least_N(self, design: TriedDesign) -> float | None:
-        """Mean force at the least depth at which a design reads; None where it does not."""
+        """Mean force at the least depth at which a design reads, N; None where it does not read."""
         least = self.records[design.name]["least"]
         return None if least is None else float(least["mean_force_N"])
 
     @property
     def best(self) -> TriedDesign | None:
-        """The one with the least force of all; None where none reads."""
+        """The design with the least force of all; None where none reads."""
         read = [one for one in self.designs if self.least_N(one) is not None]
         return min(read, key=lambda one: self.least_N(one) or 0.0, default=None)
 
@@ -82,13 +82,14 @@ def run_designs(
     scheduler: str | None = None,
     progress: Progress | None = None,
 ) -> dict[str, Any]:
-    """Search for the design that reads with the least force into the folder out and return what design.json says.
+    """Search for the design that reads with the least force into the folder out; the content of design.json.
 
-    On one process per core, as many as workers, or on the Dask cluster of a scheduler. A design that fails has its
-    reason and does not stop the others; designs of an earlier search in out are not pressed again. InputError.
+    The work is done by one process per core, by as many as workers, or by the Dask cluster of a scheduler. A design
+    that fails has its reason and does not stop the others; designs of an earlier search in out are not pressed again.
+    InputError.
     """
     from softdot.executors import executor_for
-    from softdot.reading.designs.results import finish
+    from softdot.reading.designs.results import write_results
     from softdot.sweeps.table import check_tables
 
     check_tables()
@@ -99,8 +100,8 @@ def run_designs(
         stack.enter_context(_held_folder(place))
         stack.enter_context(log_file(place / LOG_FILE))
         work = DesignWork(request, asked, place / FOLDER, executor, progress)
-        found = searched(work)
-        return finish(place, request, asked, found)
+        found = run_search(work)
+        return write_results(place, request, asked, found)
 
 
 @contextmanager
@@ -118,21 +119,21 @@ def _held_folder(place: Path) -> Iterator[None]:
         unlock_folder(held)
 
 
-def searched(work: "DesignWork") -> DesignRecords:
-    """The compared designs, those that fill the space, then the rounds."""
+def run_search(work: "DesignWork") -> DesignRecords:
+    """Press and read with the compared designs, those that fill the space, and then those of the rounds."""
     request = work.request
-    work.done([*request.compared, *request.first])
+    work.press_and_read([*request.compared, *request.first])
     for number in range(request.search.rounds):
         own = [one for one in work.found.designs if one not in request.compared]
         rows, forces = [request.row(one) for one in own], [work.found.least_N(one) for one in own]
         seed = request.space.sweep.seed + number
         chosen = propose(request.space.sweep.axes, rows, forces, request.search.each, seed)
-        work.done([request.chosen(len(own) + k, row) for k, row in enumerate(chosen, 1)])
+        work.press_and_read([request.chosen(len(own) + k, row) for k, row in enumerate(chosen, 1)])
     return work.found
 
 
 class DesignWork:
-    """What is done of a search: designs of an earlier one from its folder, and what is missing by an executor."""
+    """The work of a search: designs of an earlier one from its folder, and missing ones by an executor."""
 
     def __init__(
         self, request: DesignRequest, asked: AskedReading, folder: Path, executor: Executor, progress: Progress
@@ -141,8 +142,8 @@ class DesignWork:
         self._asked, self._folder, self._executor, self._progress = asked, folder, executor, progress
         self._program = source_hash(design_record.__module__)
 
-    def done(self, wanted: list[TriedDesign]) -> None:
-        """Press and read with these designs."""
+    def press_and_read(self, wanted: list[TriedDesign]) -> None:
+        """Press and read with these designs, as far as no record is stored."""
         from softdot.sweeps.points import failed_record, records_as_completed
 
         search, space = self.request.search, self.request.space
@@ -150,7 +151,7 @@ class DesignWork:
         self.found.designs += wanted
         missing: dict[str, TriedDesign] = {}
         for one in wanted:
-            kept = self._kept(one)
+            kept = self._stored_record(one)
             if one.config is None:
                 kept = {**failed_record("refused", one.reason or ""), "readings": [], "least": None, "seconds": 0.0}
             if kept is None:
@@ -162,8 +163,8 @@ class DesignWork:
         tasks = {name: (self._task(one),) for name, one in missing.items()}
         for name, record in records_as_completed(self._executor, design_record, tasks):
             whole = {"readings": [], "least": None, "seconds": None, **record}  # a worker that died tells nothing
-            self.found.records[name] = self._keep(missing[name], whole)
-            self._progress.step(len(self.found.records), count, _in_short(name, whole))
+            self.found.records[name] = self._store_record(missing[name], whole)
+            self._progress.step(len(self.found.records), count, _result_line(name, whole))
 
     def _task(self, design: TriedDesign) -> DesignTask:
         asked, search = self._asked, self.request.search
@@ -173,24 +174,24 @@ class DesignWork:
         )
 
     def _path(self, design: TriedDesign) -> Path:
-        """Named by the hash of all that a record depends on, the program among it."""
+        """The file of a record, named by the hash of everything that it depends on, the program included."""
         task = self._task(design)
         told = {**asdict(task), "config": config_hash(task.config), "program": self._program}
         return self._folder / f"{sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()}.json"
 
-    def _kept(self, design: TriedDesign) -> dict[str, Any] | None:
+    def _stored_record(self, design: TriedDesign) -> dict[str, Any] | None:
         if design.config is None:
             return None
         found = read_checked(self._path(design), "the design is pressed again")
         return None if found is None or found["status"] in ACCIDENTS else found
 
-    def _keep(self, design: TriedDesign, record: dict[str, Any]) -> dict[str, Any]:
+    def _store_record(self, design: TriedDesign, record: dict[str, Any]) -> dict[str, Any]:
         told: dict[str, Any] = plain({**record, "name": design.name, "values": dict(design.values)})
         write_checked(self._path(design), told)
         return told
 
 
-def _in_short(name: str, record: dict[str, Any]) -> str:
+def _result_line(name: str, record: dict[str, Any]) -> str:
     if record["status"] != "solved":
         return f"{name}: {record['status']}, {record['reason']}"
     least = record["least"]

@@ -6,7 +6,7 @@ import pytest
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.decoders import learned
 from softdot.reading.decoders.onset import NoDotError
-from softdot.reading.decoders.track import tracked
+from softdot.reading.decoders.track import track_slide
 from softdot.reading.line import DotLine
 from softdot.reading.voltages import Voltages
 from solve.model import Readout
@@ -28,7 +28,7 @@ def test_every_cell_is_read_at_any_speed_and_offset(kernel, speed, offset):
 
 def test_speed_and_yaw_are_found(kernel):
     reader, heard = simulated(kernel, EVERY[:30], speed_mm_per_s=12.5, yaw_deg=4.0)
-    track = tracked(reader, heard)
+    track = track_slide(reader, heard)
     assert track.posture.speed_mm_per_s == pytest.approx(12.5, rel=5e-3)
     assert track.posture.yaw_deg == pytest.approx(4.0, abs=1.6)
     np.testing.assert_allclose(np.diff(track.passed_s), 6.0 / 12.5, rtol=0.02)
@@ -94,7 +94,7 @@ def test_a_line_with_dots_in_one_column_is_read_as_its_left_one(kernel):
 @pytest.mark.press
 @pytest.mark.parametrize("name", ["threshold", "learned"])
 def test_the_other_decoders_read_a_plain_line(kernel, name, monkeypatch):
-    monkeypatch.setattr(learned, "CELLS", 320)
+    monkeypatch.setattr(learned, "TRAINING_CELLS", 320)
     cells = cells_of(TEXT)
     reader, heard = simulated(kernel, cells, noise_mV=0.5)
     assert share(cells, read(reader, heard, name)) > 0.9
@@ -111,4 +111,4 @@ def test_silence_is_no_text(kernel):
     reader, heard = simulated(kernel, np.array([1]))
     noise = 1e-3 * np.random.default_rng(0).standard_normal(heard.voltage_V.shape)
     with pytest.raises(NoDotError, match="nothing stands out of their noise"):
-        tracked(reader, Voltages(heard.time_s, noise))
+        track_slide(reader, Voltages(heard.time_s, noise))

@@ -16,8 +16,8 @@ from softdot.reading.conditions import ReadingConditions
 from softdot.reading.designs import operating
 from softdot.reading.designs.design_file import load_request
 from softdot.reading.designs.operating import DesignTask, crosstalk_percent, depths, design_record, reading_at
-from softdot.reading.designs.results import finish, reading_rows
-from softdot.reading.designs.run import FOLDER, AskedReading, DesignWork, searched
+from softdot.reading.designs.results import reading_rows, write_results
+from softdot.reading.designs.run import FOLDER, AskedReading, DesignWork, run_search
 from softdot.reading.designs.search import pareto, propose
 from softdot.sweeps.folder import read_table
 from softdot.sweeps.points import failed_record
@@ -191,7 +191,7 @@ class Workers:
 def search_with(workers, request, folder, monkeypatch):
     monkeypatch.setattr("softdot.sweeps.points.records_as_completed", workers.all_ended)
     folder.mkdir(exist_ok=True)
-    return searched(DesignWork(request, ASKED, folder, None, Untold()))
+    return run_search(DesignWork(request, ASKED, folder, None, Untold()))
 
 
 def test_a_kernel_that_fails_is_recorded_and_stops_no_other(tmp_path, monkeypatch):
@@ -233,7 +233,7 @@ def test_a_worker_that_died_is_an_accident_that_is_tried_again(tmp_path, monkeyp
 def test_results_are_one_table_a_picture_and_a_design_that_can_be_pressed(tmp_path, monkeypatch):
     request = small(tmp_path)
     found = search_with(Workers(refuse=("design 2",)), request, tmp_path / FOLDER, monkeypatch)
-    told = finish(tmp_path, request, ASKED, found)
+    told = write_results(tmp_path, request, ASKED, found)
     assert told == json.loads((tmp_path / "design.json").read_text("utf-8"))
     assert told["best"]["name"] == found.best.name
     assert "design 2: not-converged, at 0.1 mm" in told["warnings"]

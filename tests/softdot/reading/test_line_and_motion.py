@@ -9,8 +9,8 @@ from foundation.errors import InputError
 from geometry.braille_standards import standard
 from softdot.reading.cells import cells_of
 from softdot.reading.conditions import WIDEST_SIGMA, ReadingConditions, refuse_idle
-from softdot.reading.line import made_line, nominal_line
-from softdot.reading.motion import ArrayPath, moved, near, reach_mm
+from softdot.reading.line import manufactured_line, nominal_line
+from softdot.reading.motion import ArrayPath, array_path, dots_near, reach_mm
 from tests.cases import for_each
 
 MARBURG = standard("marburg-medium")
@@ -25,9 +25,9 @@ def test_dots_lie_at_the_pitches_of_the_standard():
 def test_scatter_wear_and_missing_dots_are_as_stated(kernel):
     conditions = ReadingConditions(
         height_scatter_mm=0.01, position_scatter_mm=0.05, worn=0.25, wear_mm=0.1, missing=0.2
-    ).resolved(kernel)
+    ).with_implied_values(kernel)
     cells = np.full(2000, 63)
-    line = made_line(cells, MARBURG, conditions, np.random.default_rng(0))
+    line = manufactured_line(cells, MARBURG, conditions, np.random.default_rng(0))
     assert len(line.x_mm) / 12_000 == pytest.approx(0.8, abs=0.015)
     worn = line.extra_mm < -0.05
     assert worn.mean() == pytest.approx(0.25, abs=0.015)
@@ -39,16 +39,16 @@ def test_scatter_wear_and_missing_dots_are_as_stated(kernel):
 
 def test_a_standard_with_a_range_scatters_within_it(kernel):
     """UKAAF: 0.4 to 0.6 mm."""
-    conditions = ReadingConditions(standard="ukaaf").resolved(kernel)
+    conditions = ReadingConditions(standard="ukaaf").with_implied_values(kernel)
     assert WIDEST_SIGMA * conditions.height_scatter_mm == pytest.approx(0.1)
     assert conditions.depth_mm + 0.1 < kernel.depth_mm[-1]
 
 
 def path_of(kernel, cells, **given):
-    conditions = ReadingConditions(**given).resolved(kernel)
+    conditions = ReadingConditions(**given).with_implied_values(kernel)
     random = np.random.default_rng(1)
-    line = made_line(cells, MARBURG, conditions, random)
-    return line, moved(kernel, line, len(cells), MARBURG, conditions, random)
+    line = manufactured_line(cells, MARBURG, conditions, random)
+    return line, array_path(kernel, line, len(cells), MARBURG, conditions, random)
 
 
 def test_a_slide_passes_every_cell_at_its_time(kernel):
@@ -70,7 +70,7 @@ def test_tremor_has_its_rms_and_bandwidth(kernel):
 def test_a_held_force_is_that_force(kernel):
     """Wherever the array is above its stop; between words it rests on the stop, with less."""
     line, path = path_of(kernel, cells_of("soft dots"), force_N=0.5, tremor_um=0.0)
-    force = kernel.of_many(*near(kernel, line, path, slice(None)))[1]
+    force = kernel.of_many(*dots_near(kernel, line, path, slice(None)))[1]
     stop = path.depth_mm.max()
     held = path.depth_mm < stop - 1e-6
     np.testing.assert_allclose(force[held], 0.5, rtol=2e-3)
@@ -85,7 +85,7 @@ def test_a_turned_array_sees_the_line_turned(kernel):
     line = replace(nominal_line(cells_of("d"), MARBURG), x_mm=np.array([1.0, 1.0 + np.cos(angle)]),
                    y_mm=np.array([0.5, 0.5 + np.sin(angle)]), extra_mm=np.zeros(2))  # fmt: skip
     path = ArrayPath(np.zeros(1), np.ones(1), np.full(1, 0.5), np.full(1, 0.2), 30.0, np.zeros(1))
-    x, y, depth = near(kernel, line, path, slice(None))
+    x, y, depth = dots_near(kernel, line, path, slice(None))
     np.testing.assert_allclose([x[0], y[0]], [[0.0, 1.0], [0.0, 0.0]], atol=1e-12)
     np.testing.assert_allclose(depth, 0.2)
 
@@ -104,7 +104,7 @@ def test_a_turned_array_sees_the_line_turned(kernel):
 )
 def test_conditions_that_cannot_be_are_one_sentence(kernel, given, said):
     with pytest.raises(InputError, match=said):
-        ReadingConditions(**given).resolved(kernel)
+        ReadingConditions(**given).with_implied_values(kernel)
 
 
 @for_each(

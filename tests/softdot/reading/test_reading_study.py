@@ -9,22 +9,22 @@ import pytest
 from foundation.errors import InputError
 from softdot.cli import main
 from softdot.reading.conditions import ReadingConditions
-from softdot.reading.study import ReadingStudy, load_study, points, repeated, with_value
+from softdot.reading.study import ReadingStudy, load_study, repeats_of, study_points, with_condition
 from softdot.reading.study_limits import Readings, limits_of
-from softdot.reading.study_task import StudyTask, keep, kept, kernel_hash, read_task
+from softdot.reading.study_task import StudyTask, kernel_hash, read_task, store_record, stored_record
 from tests.softdot.reading.lines import READOUT
 
 
 def found_limits(study, is_read):
     """The limits when a condition is read or not as a function says."""
-    readings, wanted = Readings(), points(study)
+    readings, wanted = Readings(), study_points(study)
     for _ in range(20):
         for one in wanted:
-            for each in repeated(study, one):
+            for each in repeats_of(study, one):
                 readings.records[each] = {"status": "read", "right": 100 if is_read(one) else 90, "of": 100}
         limits = dict(limits_of(study, readings))
         following = {name: one.following for name, one in limits.items() if one.following is not None}
-        wanted = [with_value(study.base, name, value) for name, value in following.items()]
+        wanted = [with_condition(study.base, name, value) for name, value in following.items()]
         if not wanted:
             return limits
     raise AssertionError
@@ -52,7 +52,7 @@ def test_without_limit_the_last_value_is_told():
 
 def test_combined_axes_give_every_combination():
     study = ReadingStudy(ReadingConditions(), {"noise_mV": (1.0, 2.0), "yaw_deg": (0.0, 3.0, 6.0)}, combine=True)
-    assert len(points(study)) == 6
+    assert len(study_points(study)) == 6
 
 
 @pytest.mark.parametrize(
@@ -89,12 +89,12 @@ def test_a_reading_is_kept_by_all_it_depends_on(kernel_folder, tmp_path):
     task = StudyTask(str(kernel_folder), READOUT.model_dump_json(), conditions, "dots", None, "model")
     other = StudyTask(str(kernel_folder), READOUT.model_dump_json(), conditions, "dot", None, "model")
     name = kernel_hash(kernel_folder)
-    assert task.key(name) != other.key(name)
+    assert task.hash_key(name) != other.hash_key(name)
     record = read_task(task)
     assert (record["status"], record["right"], record["of"]) == ("read", 4, 4)
-    keep(tmp_path, task.key(name), task, record)
-    assert kept(tmp_path, task.key(name))["text_read"] == "dots"
-    assert kept(tmp_path, other.key(name)) is None
+    store_record(tmp_path, task.hash_key(name), task, record)
+    assert stored_record(tmp_path, task.hash_key(name))["text_read"] == "dots"
+    assert stored_record(tmp_path, other.hash_key(name)) is None
 
 
 @pytest.mark.press

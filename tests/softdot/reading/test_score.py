@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 
 from softdot.reading.cells import cells_of
-from softdot.reading.score import aligned, rate, scores
+from softdot.reading.score import align, rate, scores
 
 
 def test_what_was_lost_and_added_is_found():
-    assert aligned("touch", "tuch") == [(0, 0), (1, None), (2, 1), (3, 2), (4, 3)]
-    assert aligned("dot", "dots") == [(0, 0), (1, 1), (2, 2), (None, 3)]
-    assert aligned("", "ab") == [(None, 0), (None, 1)]
+    assert align("touch", "tuch") == [(0, 0), (1, None), (2, 1), (3, 2), (4, 3)]
+    assert align("dot", "dots") == [(0, 0), (1, 1), (2, 2), (None, 3)]
+    assert align("", "ab") == [(None, 0), (None, 1)]
 
 
 def test_the_least_number_of_errors_is_that_of_the_literature():
     """kitten and sitting differ by three (Levenshtein's distance)."""
-    pairs = aligned("kitten", "sitting")
+    pairs = align("kitten", "sitting")
     assert sum(i is None or j is None or "kitten"[i] != "sitting"[j] for i, j in pairs) == 3
 
 

@@ -9,8 +9,8 @@ from foundation.errors import InputError
 from geometry.braille_standards import standard
 from softdot.reading.decoders.templates import Posture, templates
 from softdot.reading.kernels import electronics_of
-from softdot.reading.recorded_file import recorded_voltages
-from softdot.reading.voltages import Reader, Voltages, behind_readout, charge_again_pC
+from softdot.reading.recorded_file import read_voltages
+from softdot.reading.voltages import Reader, Voltages, readout_voltages, restored_charge_pC
 from solve.model import Readout
 from tests.cases import for_each
 from tests.softdot.reading.lines import NOMINAL, READOUT, simulated
@@ -25,7 +25,7 @@ def test_a_charge_that_rises_evenly_leaves_by_the_resistor(kernel):
     own = reader(kernel, Readout(input_resistance_MOhm=1000.0, input_capacitance_pF=180.0))
     time = np.linspace(0.0, 1.0, 11)
     at = np.linspace(0.0, 1.0, 501)
-    voltage = behind_readout(own, time, np.outer(time, np.full(6, 50.0)), at)
+    voltage = readout_voltages(own, time, np.outer(time, np.full(6, 50.0)), at)
     closed = 1e9 * 50e-12 * -np.expm1(-at / 0.2)
     np.testing.assert_allclose(voltage, np.repeat(closed[:, None], 6, axis=1), rtol=1e-9, atol=1e-15)
 
@@ -51,7 +51,7 @@ def test_what_the_design_states_of_the_circuit_acts(kernel):
     own = replace(reader(kernel, Readout()), physics=physics)
     time = np.linspace(0.0, 2.0, 2001)
     step = np.minimum(time[:, None] / 1e-3, 1.0) * np.full(6, 20.0)  # 1 V on 20 pF
-    voltage = behind_readout(own, time, step, time)[:, 0]
+    voltage = readout_voltages(own, time, step, time)[:, 0]
     np.testing.assert_allclose(voltage, -np.expm1(-2.0 * np.pi * 0.5 * np.maximum(time - 5e-4, 0.0)), atol=2e-3)
 
 
@@ -69,7 +69,7 @@ def test_the_charge_is_found_again(kernel, readout):
     own = reader(kernel, readout)
     at = np.linspace(0.0, 2.0, 4001)
     charge = 100.0 * np.exp(-(((at[:, None] - np.linspace(0.8, 1.2, 6)) / 0.2) ** 2))
-    again = charge_again_pC(own, Voltages(at, behind_readout(own, at, charge, at)))
+    again = restored_charge_pC(own, Voltages(at, readout_voltages(own, at, charge, at)))
     np.testing.assert_allclose(again, charge, atol=0.5)
 
 
@@ -104,4 +104,4 @@ def test_a_recording_of_more_channels_than_segments_is_refused(beside, tmp_path)
     rows = "".join(f"{n},0,0,0\n" for n in range(60))
     (tmp_path / "a.csv").write_text(f"time_s,voltage_1_V,voltage_2_V,{beside}\n{rows}", "utf-8")
     with pytest.raises(InputError, match="has 3 channels, the kernel has 2 segments"):
-        recorded_voltages(tmp_path / "a.csv", 2)
+        read_voltages(tmp_path / "a.csv", 2)
