@@ -48,6 +48,7 @@ from solve.validity import doubts
 from solve.waveform import Waveform
 
 MOST_ELEMENTS = 1_000_000
+"""Largest mesh that is allowed, in tetrahedra."""
 SIZE_SAMPLES = 100_000
 """Random points of the stack at which the element size is looked up."""
 TETRAHEDRA_PER_CUBE = 6.0 * np.sqrt(2.0)
@@ -113,9 +114,12 @@ def expected_tetrahedra(
 
 UNKNOWNS_PER_TETRAHEDRON = {"solid": 4.4, "plane-strain": 1.6}
 ITERATIONS_PER_STEP = 5
+"""Newton iterations of a load step in the expected cost."""
 ITERATION_REFERENCE_S, REFERENCE_UNKNOWNS, TIME_EXPONENT = 1.5, 68_400, 1.5
+"""Time of a Newton iteration at REFERENCE_UNKNOWNS unknowns; it grows with the power TIME_EXPONENT of their number."""
 SOLIDS_AND_PICTURES_S, MESH_S_PER_TETRAHEDRON = 9.0, 3e-4
 COMPILE_S = 15.0
+"""Time to compile the element kernels, once on a machine."""
 
 
 @dataclass(frozen=True)
@@ -157,12 +161,11 @@ def _two_digits(value: float) -> int:
 
 
 NEARLY_INCOMPRESSIBLE_POISSON_RATIO = 0.49
+"""Poisson's ratio above which a closed cavity blocks the film."""
 
 
 def result_warnings(model: Model, dot_shape: DotShape, result: PressResult) -> list[str]:
-    """Warnings from a solution: those of the solver, yield of the film where it is not modelled, strain beyond the
-    data.
-    """
+    """Warnings from a solution: of the solver, of yield where it is not modelled, of strain beyond the data."""
     yields = bool(laws_of(model.physics.inelastic, Yield))
     warnings = [*result.warnings, *([] if yields else _yield_warnings(model, result)), *doubts(model, result)]
     for layer, material in model.materials.items():

@@ -20,6 +20,7 @@ from softdot.no_room import no_room_sentence
 INTERRUPTED_SENTENCE = "interrupted, nothing was written"
 UNINTERRUPTIBLE_FILES = "<frozen importlib", "llvmlite"  # in the file names of their code
 RETRY_INTERRUPT_S = 0.05
+"""Time after which an interrupt that could not be handled is sent again."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -53,8 +54,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 class _Interrupt:
-    """The handler of Ctrl-C and SIGTERM: raises KeyboardInterrupt, which some compiled libraries turn into another
-    error.
+    """The handler of Ctrl-C and SIGTERM: raises KeyboardInterrupt, which some libraries turn into another error.
 
     It waits for the end of an import and of a compilation: VTK, whose libraries import each other, crashes where one of
     them fails to, and LLVM prints and forgets what is raised in its callbacks.

@@ -12,12 +12,11 @@ from softdot.log import warn
 
 LONGEST_SENTENCE = 2000  # characters of a sentence; a path may have some
 GOOD, BAD_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 2, 3, 130
+"""Exit statuses of the commands."""
 
 
 def show(summary: dict[str, Any], chosen: Namespace, short_text: Callable[[dict[str, Any], str], str]) -> None:
-    """Print a summary, as JSON when asked for, else in short, in a pipe too; its warnings always go to standard
-    error.
-    """
+    """Print a summary, as JSON when asked for, else in short; its warnings always go to standard error."""
     warn(summary.get("warnings", []))
     if chosen.json:
         sys.stdout.write(json_text(summary))

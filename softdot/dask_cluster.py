@@ -36,9 +36,7 @@ class Cluster:
         return max(1, sum(threads.values()))
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any) -> "Future[Any]":
-        """Call a function on a worker, as foundation.executor.Executor.submit. AwayError, raised here or by the
-        future.
-        """
+        """Call a function on a worker, see foundation.executor.Executor. AwayError, raised here or by the future."""
         future: Future[Any] = Future()
         future.set_running_or_notify_cancel()
         asked = _call_scheduler(self._client.submit, function, *arguments, pure=False)
@@ -71,7 +69,9 @@ def _copy_result(future: "Future[Any]", asked: Any) -> None:
 
 
 CONNECT_S, WORKERS_S = 5, 10
+"""Times to wait for an answer of the scheduler, and for its first worker."""
 ADDRESS = re.compile(r"(tcp|tls)://(\[[0-9a-fA-F:.]+\]|[\w.-]+):(\d{1,5})")
+"""The address of a scheduler: protocol, host and port."""
 
 
 @contextmanager

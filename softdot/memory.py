@@ -15,6 +15,7 @@ SOLID_GB, SOLID_ELEMENTS, MEMORY_EXPONENT = 4.6, 64_000, 1.2
 SLICE_GB_PER_ELEMENT = 1.2e-5
 """Memory for each element of a slice: a press of 11,016, 38,352 and 93,492 took 0.42, 0.69 and 1.25 GB."""
 CGROUP_FILES = "/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"
+"""Files of the kernel with the limit of memory of a container, by version of cgroups."""
 
 
 def needed_GB(elements: float, sliced: bool) -> float:
@@ -39,9 +40,7 @@ def refuse_too_little_memory(elements: float, sliced: bool, key: str, value: flo
 
 
 def refuse_no_room_for_libraries() -> None:
-    """InputError where this process may have less memory than loading the libraries takes, as they would fail
-    midway.
-    """
+    """InputError where this process may have less memory than the libraries take, as loading them would fail midway."""
     for what, limit, extra in _limits():
         least = BASE_GB + extra
         if least > limit:

@@ -10,16 +10,21 @@ from foundation.executor import LostError
 from softdot.console import BAD_INPUT, NOT_CONVERGED
 
 READ_ONLY_ERRORS = {errno.EROFS, errno.EACCES, errno.EPERM}
+"""Error numbers of a place that cannot be written."""
 FULL_DISK_ERRORS = {
     errno.ENOSPC: "the disk is full",
     errno.EDQUOT: "the quota of the disk is used up",
     errno.EFBIG: "a limit of the size of files (ulimit -f) is reached",
 }
+"""Error number of a disk without room -> its words."""
 OUT_OF_MEMORY_WORDS = ("bad_alloc", "out of memory", "cannot allocate memory", "unable to allocate")
+"""Parts of the messages by which libraries report a lack of memory."""
 ADVICE = "use larger element sizes, or a machine or a job with more memory"
+"""The remedy for a lack of memory."""
 
 LEAST_FREE_B = 65536  # a disk with less than this has had no room for the last block of a file
 PROBE_FILE_B = 2**22
+"""Size of the file that is written to test a disk."""
 
 
 def refuse_cut_files(folder: Path) -> None:

@@ -148,9 +148,7 @@ def _in_use(out: Path, staging: Path) -> InputError:
 
 
 def _recover(staging: Path, place: Path) -> None:
-    """Remove the leavings of a killed process; one killed between two renamings left the earlier result beside its
-    place.
-    """
+    """Remove what a killed process left, and put back an earlier result that it left beside its place."""
     old = _set_aside_path(staging)
     if staging.exists():
         sweep_folder(staging)

@@ -106,9 +106,7 @@ class Verdict:
 
     @property
     def main_part(self) -> list[dict[str, Any]]:
-        """Mechanisms that explain most of the mismatch, where the rest has no name; empty where all or nothing is
-        named.
-        """
+        """Mechanisms that explain most of the mismatch, where the rest has no name; else empty."""
         return list(self.content["main_part"])
 
     @property

@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 CAD_MODULES = ("geometry", "topology", "exporters3d", "mesher")
 """Modules of build123d; the rest of it loads scikit-learn, pandas and a reader of DXF files, in twice the time."""
 DRAWING_MODULES = ("trimesh", "solve.result", "matplotlib.figure", "pyvista.plotting", "export.pictures")
+"""Modules that drawing needs."""
 
 
 class SecondProcess(WorkerProcess):
-    """A worker that at once compiles the kernels which are not cached on this machine, and loads the libraries it
-    needs.
+    """A worker that at once compiles kernels which are not cached on this machine, and loads its libraries.
 
     kernels : done when a press will find them.
     """

@@ -103,9 +103,7 @@ PARALLEL_CHANNEL = "together"
 
 
 def channels(along: PressCourse, names: Sequence[str]) -> dict[str, Floats]:
-    """Voltage of each amplifier over time (n,) by the name of its electrode; of several electrodes also of all in
-    parallel.
-    """
+    """Voltage of each amplifier over time (n,) by the name of its electrode; of several also of all in parallel."""
     if along.channels_V is None or along.together_V is None:
         return {}
     together = {PARALLEL_CHANNEL: along.together_V} if len(names) > 1 else {}

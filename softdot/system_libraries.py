@@ -13,6 +13,7 @@ DEBIAN_PACKAGES = {
     "libgomp.so.1": "libgomp1",
     "libstdc++.so.6": "libstdc++6",
 }
+"""System library -> the package of Debian that holds it."""
 INSTALL_COMMAND = "apt-get install -y libgl1 libegl1"
 
 

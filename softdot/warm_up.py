@@ -16,19 +16,20 @@ TINY_CONFIG = {
     "press": {"indentation_mm": 0.05, "load_steps": 1},
     "mesh": {"mesher": "layered", "element_size_mm": 1.0, "contact_element_size_mm": 1.0},
 }
+"""The smallest press that uses all kernels."""
 
 
 def warm_up(executor: Executor) -> None:
     """Compile the kernels in one worker: several at once could spoil numba's cache of compiled code."""
-    if recall(_name()) is None:
+    if recall(_done_name()) is None:
         executor.submit(press_tiny).exception()
 
 
 def press_tiny() -> None:
-    """A press that takes every kernel, remembered as done."""
+    """Press the smallest configuration that takes every kernel, and note in the cache that it is done."""
     PreparedPress(config_from(TINY_CONFIG)).solve()
-    remember(_name(), True)
+    remember(_done_name(), True)
 
 
-def _name() -> str:
+def _done_name() -> str:
     return f"warm-{data_hash([TINY_CONFIG, source_hash('solve.press')])}"

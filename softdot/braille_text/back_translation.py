@@ -12,9 +12,7 @@ SIGNS_WITHIN_NUMBERS = (",", ".")
 
 
 def back_translate(called_by: str, cells: str, table: str) -> str:
-    """The text of cells by a table of liblouis, which is called by its binding or its program; the cells where it
-    fails.
-    """
+    """The text of cells by a table of liblouis, called by its binding or its program; the cells where it fails."""
     if called_by == "louis":
         import louis  # type: ignore[import-not-found]
 

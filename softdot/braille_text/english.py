@@ -10,10 +10,10 @@ from typing import Any
 from foundation.errors import InputError
 
 # a number with its points and commas; letters; Braille; anything else, one by one
-TOKEN = re.compile(r"(?:(?<![A-Za-z])\.)?[0-9][0-9.,]*|[A-Za-z]+|[\u2800-\u28ff]+|.", re.DOTALL)
+TEXT_TOKEN = re.compile(r"(?:(?<![A-Za-z])\.)?[0-9][0-9.,]*|[A-Za-z]+|[\u2800-\u28ff]+|.", re.DOTALL)
 DIGIT = re.compile("[0-9]")
 """Digits with cells in the table; others that Unicode calls so, such as \u00b2 or \u0663, have none."""
-CAPITALS = re.compile(r"[A-Z]+|[a-z]+")
+CAPITALS_OR_LETTERS = re.compile(r"[A-Z]+|[a-z]+")
 
 
 def english_cells(text: str, advice: str) -> str:
@@ -22,7 +22,7 @@ def english_cells(text: str, advice: str) -> str:
     InputError, which names the character, its place and then the advice, for a character that the table lacks.
     """
     cells, table = "", english_table()
-    for token in TOKEN.finditer(text):
+    for token in TEXT_TOKEN.finditer(text):
         word, follows = token.group(), text[token.end() : token.end() + 1]
         if DIGIT.search(word):
             cells += _number(word, follows, table)
@@ -55,7 +55,7 @@ def _number(number: str, follows: str, table: dict[str, Any]) -> str:
 def _letters(word: str, table: dict[str, Any]) -> str:
     """Letters, with a sign before one capital, or before and behind several."""
     signs, cells = table["indicators"], ""
-    for run in CAPITALS.finditer(word):
+    for run in CAPITALS_OR_LETTERS.finditer(word):
         letters = run.group()
         if letters.isupper():
             cells += signs["capital"] if len(letters) == 1 else signs["capital_word"]

@@ -15,6 +15,7 @@ INSTALL_ADVICE = (
     "such as --table en-ueb-g2.ctb"
 )
 DISPLAY_TABLE = "unicode.dis"
+"""The table of liblouis by which cells are characters of Unicode."""
 UNKNOWN_CHARACTER = re.compile("⠄⡳⠭[⠀-⣿]*?⠄")
 """The cells that liblouis writes for a character that its table lacks: the Braille of '\\xhhhh'."""
 TIMEOUT_S = 60

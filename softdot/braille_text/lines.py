@@ -13,9 +13,7 @@ BLANK = "\u2800"
 
 @dataclass(frozen=True)
 class Translation:
-    """Lines of Unicode Braille cells. table : by which they were translated. liblouis : its version where it was
-    used.
-    """
+    """Lines of Unicode Braille cells. table : by which they were translated. liblouis : its version where used."""
 
     lines: tuple[str, ...]
     table: str

@@ -31,9 +31,7 @@ def command(chosen: Namespace) -> int:
 
 
 def short_text(summary: dict[str, Any], output: str) -> str:
-    """The summary in a few lines: crosstalk, the lone segment that stands for one of the array, and the path of the
-    report.
-    """
+    """The summary in a few lines: crosstalk, the lone segment that stands for others, and the path of the report."""
     lines = [
         f"{len(summary['segments'])} segments, {summary['solver']['presses']} presses solved: largest crosstalk "
         f"{summary['largest_crosstalk_percent']:.3g} %"

@@ -10,9 +10,7 @@ from softdot.console import GOOD, INTERRUPTED, NOT_CONVERGED, complain, only_the
 
 
 def command(chosen: Namespace) -> int:
-    """Prove chosen.cases cases into chosen.output; 0, 3 when not one was scored, or 130 when interrupted.
-    InputError.
-    """
+    """Prove chosen.cases cases into chosen.output; 0, 3 when none was scored, or 130 when interrupted. InputError."""
     if find_spec("skfem") is None:
         raise InputError("prove needs scikit-fem, the other finite-element code: pip install 'softdot[prove]'")
     from softdot.studies.proof.proof_folder import CASES

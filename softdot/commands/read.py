@@ -156,7 +156,7 @@ def _run_resumable(chosen: Namespace, folder: str, work: Callable[[Progress], di
 
 
 def _search_designs(chosen: Namespace) -> int:
-    """Search for a design into chosen.output; 0, 3 when no design could be solved, 130 when interrupted. InputError."""
+    """Search for a design into chosen.output; 0, 3 when none could be solved, 130 when interrupted. InputError."""
     from foundation.errors import InputError
     from softdot.reading.decoders import named_decoders
     from softdot.reading.designs.design_file import load_request

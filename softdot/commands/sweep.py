@@ -17,9 +17,7 @@ from softdot.sweeps.run import run_sweep
 
 
 def command(chosen: Namespace) -> int:
-    """Sweep chosen.space into chosen.output; 0, 3 when not one point could be solved, 130 when interrupted.
-    InputError.
-    """
+    """Sweep chosen.space into chosen.output; 0, 3 when no point could be solved, 130 when interrupted. InputError."""
     from softdot.sweeps.folder import POINTS
     from softdot.sweeps.space import load_space
 

@@ -70,9 +70,7 @@ def _with_layer_tables(tables: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def with_built_in_constants(tables: Mapping[str, Any]) -> dict[str, Any]:
-    """The tables, where a material that overrides a built-in one of the same model keeps the constants it does not
-    state.
-    """
+    """The tables, with the unstated constants of each material that overrides a built-in one of the same model."""
     own = tables.get("materials", {})
     if not isinstance(own, dict):
         return dict(tables)

@@ -20,6 +20,7 @@ MOST_MISTAKES = 100
 DECIDING_KEYS = {"model", "name", "component"}
 """Keys whose value decides what else their table may hold: without it the table cannot be judged."""
 DOTTED_KEY = re.compile(r'(?:[\w-]+|"[^"]+")(?:\.[\w-]+|\."[^"]+"|\[\d+\])*')
+"""A dotted key at the beginning or within a sentence."""
 Checked = TypeVar("Checked")
 Way = tuple[str | int, ...]
 
@@ -27,9 +28,7 @@ Way = tuple[str | int, ...]
 def mistakes(
     tables: Mapping[str, Any], check: Callable[[Mapping[str, Any]], Checked]
 ) -> tuple[list[str], Checked | None]:
-    """Every sentence with which check refuses the tables, at most MOST_MISTAKES, and what check returns when there is
-    none.
-    """
+    """Every sentence with which check refuses the tables, at most MOST_MISTAKES, and its result when there is none."""
     found: list[str] = []
     rest = _Rest(tables)
     while len(found) < MOST_MISTAKES:

@@ -108,9 +108,7 @@ def _refuse_missing_channels(key: str, mechanism: Mechanism, model: Model) -> No
 
 
 def _refuse_unfelt_input(key: str, mechanism: Mechanism, model: Model) -> None:
-    """InputError for an effect parallel to the input of a charge amplifier: a virtual ground carries no current through
-    it.
-    """
+    """InputError for an effect parallel to a virtual ground, the input of a charge amplifier, which never acts."""
     charge = model.readout is not None and model.readout.mode == "charge"
     if charge and mechanism.component in MECHANISMS[mechanism.name].parallel_to_input:
         raise InputError(

@@ -25,15 +25,14 @@ from softdot.convert.text_table import file_text
 from softdot.convert.units import known_unit
 
 LONGEST_READ_S = 600.0
+"""Time after which the process of a reader is ended."""
 HDF5_MAJOR_VERSION = 2
 """Major version of the .mat files that MATLAB calls 7.3. They are refused: save(..., '-v7') spares an HDF5 library."""
 Arrays = dict[str, Any]
 
 
 def read_in_own_process(reader: str, file: Path, asked: Mapping[str, str] | None = None) -> Arrays:
-    """The arrays that a reader of READERS makes of a file. InputError, also where its process dies or takes
-    LONGEST_READ_S.
-    """
+    """The arrays that a reader of READERS makes of a file. InputError, also where its process dies or is too slow."""
     regular_file_size(file, f"'{file}'")
     with scratch_folder() as folder:
         (folder / "asked.json").write_text(json.dumps(dict(asked or {})), "utf-8")
@@ -140,9 +139,7 @@ def _second(unit: str, file: Path) -> float:
 
 
 def lvm_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
-    """The log in an .lvm file of LabVIEW, by lvm_read, which is given the text and so reads no pickle beside it.
-    InputError.
-    """
+    """The log in an .lvm file of LabVIEW, by lvm_read; a pickle beside the file is not read. InputError."""
     import lvm_read  # type: ignore[import-not-found, unused-ignore]
 
     found = lvm_read.read_str(file_text(file))
@@ -174,7 +171,7 @@ def lvm_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
 
 
 def waveform_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
-    """The log in a binary file of Rigol, Tektronix, LeCroy, Keysight, Siglent, Rohde & Schwarz or Yokogawa, by
+    """The log in a binary file of Rigol, Tektronix, LeCroy, Keysight, Siglent, Rohde & Schwarz, Yokogawa, by
     RigolWFM.
     """
     from RigolWFM.wfm import Wfm  # type: ignore[import-not-found, unused-ignore]
@@ -188,9 +185,7 @@ def waveform_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
 def _log_arrays(
     file: Path, times: Sequence[Floats], names: Sequence[str], units: Sequence[str], values: Sequence[Floats]
 ) -> Arrays:
-    """The arrays of a log: time_s (t,), names, units (n,) and values (n, t). InputError for channels with other
-    times.
-    """
+    """The arrays of a log: time_s (t,), names, units (n,), values (n, t). InputError for channels with other times."""
     if not times or len({len(names), len(units), len(values), len(times)}) != 1:
         raise InputError(f"'{file}': holds no channel, or channels without name or unit")
     for name, time, column in zip(names, times, values, strict=True):
@@ -216,6 +211,7 @@ READERS: dict[str, Callable[[Path, Mapping[str, str]], Arrays]] = {
     ".lvm": lvm_log,
     "waveform": waveform_log,
 }
+"""Ending of a file, or kind of it -> its reader."""
 
 
 if __name__ == "__main__":

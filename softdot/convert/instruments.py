@@ -23,12 +23,14 @@ from softdot.convert.text_table import MISSING_SAMPLE, TextTable, read_text_tabl
 from softdot.convert.units import Unit, assumed_unit, known_unit, split_name, unit_of
 
 HEADER_ROWS = 200
+"""Rows in which a header is looked for."""
 TIME_NAME = re.compile(
     r"#?(?:(?:elapsed|test|running|total|run|rel(?:ative)?|abs(?:olute)?)[ _]*)?"
     r"(?:\w*time|\w*zeit|temps|tiempo|elapsed|t|s|x|x[- ]?axis|seconds?|secs?|millis|micros|in|time[ _]?stamp)"
     r"(?:[ _]*(?:elapsed|axis|base))?",
     re.IGNORECASE,
 )
+"""Names of columns of times."""
 COUNTER_NAME = re.compile(r"#|nr|no\.?|n|index|idx|sample|samples|point|points|row|scan|segment", re.IGNORECASE)
 """Names of columns that count samples."""
 CLOCK = re.compile(r"\d+[:./-]\d+[:./-]\d+")
@@ -56,9 +58,7 @@ class LogChannel:
 
 @dataclass(frozen=True)
 class InstrumentLog:
-    """The log of one instrument: times that rise, time_s (t,), and channels by the names that the instrument gives
-    them.
-    """
+    """The log of one instrument: rising times time_s (t,), and channels by the names that the instrument gives them."""
 
     time_s: Floats
     channels: Mapping[str, LogChannel]
@@ -142,9 +142,7 @@ def _refuse_wide(table: TextTable, rows: Sequence[int], layout: Layout) -> None:
 
 
 def _refuse_no_seconds(time_s: Floats, layout: Layout, table: TextTable) -> None:
-    """InputError where times without a unit cannot be seconds: they are too late, or disagree with a stated
-    interval.
-    """
+    """InputError where times without a unit cannot be seconds: too late, or against a stated interval."""
     where = f"{table.place(layout.header or 0)}: the time has no unit"
     if np.abs(time_s).max() > LATEST_TIME_S:
         raise InputError(
@@ -236,9 +234,7 @@ def _is_header(cells: Sequence[str], column: int, table: TextTable) -> bool:
 
 
 def _is_time(cell: str) -> bool:
-    """Whether a name, without its unit, is that of a time; a single letter only where its unit is one of time, or
-    missing.
-    """
+    """Whether a name, without its unit, is that of a time; a single letter only where its unit is no other."""
     bare = re.sub(r"\s*[(\[{].*", "", cell.strip())
     parts = [bare, bare.rpartition("_")[0], bare.rpartition(",")[0], bare.rpartition("/")[0], bare.rpartition(" ")[0]]
     found = {part.strip() for part in parts if part.strip() and TIME_NAME.fullmatch(part.strip())}
@@ -339,7 +335,7 @@ def _agreed_unit(unit: Unit | None, beside: Sequence[str], name: str, where: str
 def _time_column_units(
     table: TextTable, row: int, column: int, units: Sequence[str], steps: Mapping[str, int], settings: Settings
 ) -> TimeColumn:
-    """The column of times with its factor to seconds: of sequence numbers, in a stated unit, or else in seconds.
+    """The column of times with its factor to seconds: of sequence numbers, in a unit, or else in seconds.
     InputError.
     """
     where = table.place(row)

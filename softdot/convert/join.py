@@ -49,9 +49,7 @@ class NamedLog:
 
 @dataclass(frozen=True)
 class JoinedRun:
-    """The logs of one run on one clock: columns by name, samples (t,), time_s first; remarks and warnings in
-    sentences.
-    """
+    """The logs of one run on one clock: columns by name, samples (t,), time_s first; remarks, warnings in sentences."""
 
     columns: Mapping[str, Floats]
     remarks: Sequence[str]
@@ -105,7 +103,7 @@ def join_logs(logs: Sequence[NamedLog], named: Mapping[str, str], offsets_s: Seq
 def _columns(
     logs: Sequence[NamedLog], named: Mapping[str, str], align: bool
 ) -> tuple[dict[str, tuple[int, str]], dict[int, str]]:
-    """Column -> log and channel; and, to align, log -> its channel of the quantity that the first log has too.
+    """Column -> log and channel; and, to align, log -> its channel of the same quantity as the first log.
     InputError.
     """
     every = [(n, name, channel) for n, one in enumerate(logs) for name, channel in one.log.channels.items()]
@@ -191,7 +189,7 @@ def _on_one_clock(
 
 
 def _clock_shift(first: NamedLog, other: NamedLog, channel: str) -> tuple[float, str, list[str]]:
-    """Seconds to add to the times of another log, by the channel that it shares with the first, and a sentence.
+    """Seconds to add to the times of another log, by the channel it shares with the first, and a sentence.
     InputError.
     """
     unit = other.log.channels[channel].unit
@@ -238,9 +236,7 @@ def _drift(even: Sequence[Floats], found: Lag, step_s: float, where: str) -> lis
 
 
 def _interpolate(time_s: Floats, given_s: Floats, values: Floats) -> Floats:
-    """Values at other times by monotone cubics; missing samples are bridged. InputError where fewer than two are
-    left.
-    """
+    """Values at other times by monotone cubics; missing samples are bridged. InputError for fewer than two samples."""
     there = np.isfinite(values)
     if there.sum() < FEWEST_SAMPLES:
         raise InputError(f"a channel was measured in less than {FEWEST_SAMPLES} samples")

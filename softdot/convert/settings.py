@@ -27,9 +27,7 @@ PER_SECOND = {"": 1.0, "k": 1e3, "m": 1e6, "g": 1e9}
 
 @dataclass(frozen=True)
 class Settings:
-    """The settings above a header: key in small letters -> the cells beside it; units of each column, in a row above
-    the names.
-    """
+    """The settings above a header. values : key in small letters -> the cells beside it. units : of each column."""
 
     values: Mapping[str, Sequence[str]]
     units: Sequence[str]

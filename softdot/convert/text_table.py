@@ -18,6 +18,7 @@ LARGEST_MB = 500
 BYTE_ORDER_MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 """First bytes of a file -> the encoding that they announce."""
 NUMBER = re.compile(r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eEdD][+-]?\d+)?", re.ASCII)
+"""A number with a point or a comma."""
 MISSING_SAMPLE = re.compile(r"[+-]?(?:nan|inf|infinity|\u221e)", re.IGNORECASE)
 """A sample that is missing, or beyond the range of its channel as PicoScope writes it."""
 NOT_A_NUMBER, OVERFLOW = 9.91e37, 9.9e37
@@ -126,9 +127,7 @@ def _likely_separator(text: str) -> str:
 
 
 def _decimal(rows: Sequence[Sequence[str]], file: Path) -> str:
-    """The decimal sign of the samples, point or comma. InputError where they have both, or it may set thousands
-    apart.
-    """
+    """The decimal sign of the samples, point or comma. InputError where they have both, or it may be of thousands."""
     marks: dict[str, str] = {}
     decimals: set[str] = set()
     grouped: set[int] = set()  # columns of 1,234

@@ -11,6 +11,7 @@ from foundation.errors import InputError
 
 STANDARD_GRAVITY = 9.80665  # m/s2: gram-force and its kin (3rd General Conference on Weights and Measures, 1901)
 POUND_KG = 0.45359237
+"""The international pound."""
 PREFIXES = {"": 1.0, "n": 1e-9, "u": 1e-6, "\u00b5": 1e-6, "\u03bc": 1e-6, "m": 1e-3, "k": 1e3}
 """Micro is a sign of its own, and the Greek letter."""
 
@@ -54,9 +55,13 @@ UNITS_BY_WORD = {
 WEIGHT_OF_MASS = {"g": "gf", "kg": "kgf", "mg": "mgf", "lb": "lbf", "lbs": "lbf", "oz": "ozf"}
 """Unit of mass -> the unit of force that a load cell means by it: the weight."""
 LOAD_NAME = re.compile(r"^(?!.*(?:accel|g[- ]?force)).*(?:load|force|cell|weight|scale|kraft|last)", re.IGNORECASE)
+"""Words in the name of a load cell's channel."""
 TEMPERATURE_NAME = re.compile(r"temp|t_?room", re.IGNORECASE)
+"""Beginnings of the name of a channel of temperature."""
 CURRENT_UNIT = re.compile(r"(?:[nu\u00b5\u03bcmk]?A|amps?|amperes?|milliamps?)", re.IGNORECASE)
+"""Units of current, which no recording has."""
 CURRENT_NAME = re.compile(r"\b(?:current|strom|amperage)\b", re.IGNORECASE)
+"""Words in the name of a channel of current."""
 TEN = r"(?:10+|0[.,]0*1|1[eE][-+]?\d+)"
 FACTOR = re.compile(
     rf"(?:(?<=[\s\[])x|[×*·/])\s*{TEN}(?!\d)|(?<![\w.]){TEN}\s*[x×*·]|(?<!\w)(?:1[eE][-+]?\d+|1:10+|10+:1)(?!\w)|"
@@ -78,6 +83,7 @@ QUANTITY_NAMES = {
 ALSO_WORDS = {"s", "S", "h", "m", "in", "min", "C", "v"}
 """Units that may be an end of a name as well: V_in is no inch, Force_min no minute."""
 KNOWN_UNITS = "ns, us, ms, s, min, h, nV, uV, mV, V, kV, mN, N, kN, gf, kgf, lbf, um, mm, cm, m, in, °C"
+"""The known units, for messages."""
 
 
 def unit_of(text: str, name: str, where: str) -> Unit:
@@ -174,6 +180,7 @@ SCOPE_CHANNEL = re.compile(
     r"ampl|amplitude|value|y|volts?|(?:.*[ _])?voltage(?:[ _].*)?|spannung",
     re.IGNORECASE,
 )
+"""Names that oscilloscopes give to channels."""
 
 
 def assumed_unit(name: str, where: str) -> Unit:

@@ -14,7 +14,9 @@ from softdot.braille_text.english import english_cells
 from softdot.braille_text.liblouis import INSTALL_ADVICE, liblouis, louis_cells
 
 MOST_CELLS = 20_000
+"""Longest line, in cells."""
 DOTS, KINDS_OF_CELL = 6, 64
+"""Dots of a cell, and number of different cells."""
 
 
 def cells_of(text: str, table: str | None = None) -> Ints:

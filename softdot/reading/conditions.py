@@ -18,7 +18,9 @@ side.
 HEIGHT_SCATTER_MM, POSITION_SCATTER_MM = 0.015, 0.03
 """Assumed where the standard states no range; no source gives them."""
 DEFAULT_SHARE_OF_DEPTH = 0.75
+"""Default depth as a share of the kernel's depth."""
 PITCH_TOLERANCE_MM = 0.01
+"""Difference of two pitches that still count as equal."""
 WIDEST_TREMOR_RMS = 4.0  # RMS, where the wobble is cut
 BOUNDS: dict[str, tuple[float, float]] = {
     "speed_mm_per_s": (0.5, 500.0),
@@ -40,6 +42,7 @@ BOUNDS: dict[str, tuple[float, float]] = {
     "press_s": (1e-3, 60.0),
     "hold_s": (0.0, 60.0),
 }
+"""Condition -> its least and largest value."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +88,7 @@ class ReadingConditions:
             raise InputError(f"--force-N = {self.force_N:g}: --mode press is driven by its depth; give --depth-mm")
 
     def with_implied_values(self, kernel: ArrayKernel) -> "ReadingConditions":
-        """The conditions with the standard, depth and scatter that kernel and standard imply. InputError for a
+        """The conditions with the standard, depth and scatter implied by kernel and standard. InputError for a
         contradiction.
         """
         if self.depth_mm is not None and self.force_N is not None:
@@ -119,6 +122,7 @@ class ReadingConditions:
 
 
 PRESS_TIMES = ("press_s", "hold_s")
+"""Conditions of --mode press alone."""
 RECORDING_CONDITIONS = ("standard", "mode", *PRESS_TIMES, "speed_mm_per_s")
 """Conditions that the decoders of a recording are told; the speed only of presses, where it gives the time of the
 next.

@@ -39,12 +39,11 @@ class KernelAbout(BaseModel):
 DEFAULT_READOUT = Readout(input_resistance_MOhm=10.0)
 """The read-out of a reader where no [readout] is stated."""
 DOT_ROWS = 3
+"""Rows of dots in a cell."""
 
 
 def open_kernel(folder: Path, config: Config | None = None) -> ArrayKernel:
-    """Open the kernel in a folder. InputError for one of another program or design, or without a segment over each
-    row.
-    """
+    """Open the kernel in a folder. InputError for one of another program or design, or that cannot read a line."""
     kernel = load_kernel(folder)
     where = f"kernel '{folder}'"
     try:

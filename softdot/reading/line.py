@@ -16,9 +16,7 @@ from softdot.reading.conditions import WIDEST_SIGMA, ReadingConditions
 
 @dataclass(frozen=True)
 class DotLine:
-    """Dots (d,) in the order of their x. extra_mm : by how much each is deeper than a nominal dot under the same
-    array.
-    """
+    """Dots (d,) in the order of their x. extra_mm : by how much each is pressed deeper than a nominal dot."""
 
     x_mm: Floats
     y_mm: Floats

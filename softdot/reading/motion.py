@@ -23,6 +23,7 @@ LEAD_MM = 3.0
 CHUNK_TIMES = 20_000
 """Number of times at which charges are looked up together, which bounds the memory."""
 RELATIVE_FORCE_TOLERANCE, DEPTH_TOLERANCE_MM = 1e-4, 1e-9
+"""Tolerances within which the depth of a force is found."""
 
 
 @dataclass(frozen=True)
@@ -44,9 +45,7 @@ class ArrayPath:
 
 @dataclass(frozen=True)
 class PressTimes:
-    """The times of presses: one begins each period_s, the first at time 0; it goes down for down_s and holds for
-    hold_s.
-    """
+    """The times of presses: each begins a period_s after the last, the first at time 0, goes down and holds."""
 
     period_s: float
     down_s: float
@@ -92,9 +91,7 @@ def array_path(
     conditions: ReadingConditions,
     random: np.random.Generator,
 ) -> ArrayPath:
-    """The path over a line of count cells. conditions : with implied values. InputError for a force that no depth
-    gives.
-    """
+    """The path over a line of count cells. conditions : with implied values. InputError for an unreachable force."""
     pitch = cell_pitch_mm(chosen)
     if conditions.mode == "press":
         return _press_path(count, pitch, conditions, random)
@@ -182,7 +179,7 @@ def _path_at_force(kernel: ArrayKernel, line: DotLine, path: ArrayPath, force_N:
 def _depth_of_force(
     kernel: ArrayKernel, dots: tuple[Floats, Floats, Floats], stop: Floats, force_N: float
 ) -> tuple[Floats, Bools]:
-    """Depth (t,) at which the force is reached, and whether it is above the stop (t,); dots : x, y and extra depth (t,
+    """Depth (t,) at which the force is reached, and whether it is above the stop (t,). dots : x, y, extra depth (t,
     k).
     """
     x, y, extra = dots

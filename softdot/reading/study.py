@@ -23,7 +23,9 @@ DEFAULT_TEXT = (
     "soft dots, read by touch: the quick brown fox jumps over the lazy dog, packs five dozen liquor jugs, and leaves "
     "at 7.45 for Vienna; who knows why? Six big quartz vaults, one jolly wizard."
 )
+"""The text that a study reads where none is stated."""
 MOST_READINGS = 20_000
+"""Largest number of readings of a study."""
 MOST_CELLS = 2_000_000
 """Most cells of all readings together: a core reads about a hundred cells a second, so that these take hours."""
 BaseConditions = create_model(

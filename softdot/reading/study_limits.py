@@ -14,6 +14,7 @@ from softdot.reading.conditions import BOUNDS, ReadingConditions
 from softdot.reading.study import ReadingStudy, repeats_of
 
 HALVINGS, DOUBLINGS = 4, 3
+"""Values that are read to narrow a limit, and to find one beyond the axis."""
 
 
 @dataclass

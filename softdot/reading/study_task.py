@@ -22,6 +22,7 @@ from softdot.reading.line_reading import read_line, reading_content
 from solve.model import Readout
 
 RATES = ("cell", "character", "word")
+"""Elements whose share of right ones is recorded."""
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from solve.physics import Physics
 from solve.readout.amplifier import amplify, input_of
 
 MAINS_HZ, LEAST_MAINS_PERIODS = 50.0, 50
+"""Frequency of the mains, and least number of periods from which its sine is subtracted."""
 READOUT_STEP_MM = 0.02
 """Longest way in a step of the integration of the read-out: within one the charge is linear."""
 Step = Callable[[int, int], None]

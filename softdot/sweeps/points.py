@@ -17,6 +17,7 @@ from softdot.progress import Logged, Progress
 Record = dict[str, Any]
 
 SOLVED, REFUSED, NOT_CONVERGED, CRASHED, LOST = "solved", "refused", "not-converged", "crashed", "lost"
+"""The ways in which a point may end."""
 STATUSES = (SOLVED, REFUSED, NOT_CONVERGED, CRASHED, LOST)
 ACCIDENTS = (CRASHED, LOST)
 """Failures that are not the configuration's: such a point is tried again when the sweep is started again."""
@@ -57,13 +58,12 @@ def solve_points(
     workers: int | None = None,
     executor: Executor | None = None,
 ) -> list[Record]:
-    """The outcome of every configuration, in order, by an executor or by processes of this computer, one per core or
-    workers.
+    """The outcome of every configuration, in order, by an executor or by processes of this computer, one per core.
 
-    Each is a new dict with status ("solved", "refused", "not-converged", "crashed" or "lost"), reason (one line, None
-    when solved), seconds, and all of softdot.outcome.outcome(config), as far as there is any. No point stops the others
-    and nothing is raised for one. Equal configurations are solved once; stored outcomes need no worker.
-    progress.step(done, count, reason or "") is called after each point.
+    workers : number of processes instead. Each outcome is a new dict with status ("solved", "refused", "not-converged",
+    "crashed" or "lost"), reason (one line, None when solved), seconds, and all of softdot.outcome.outcome(config), as
+    far as there is any. No point stops the others and nothing is raised for one. Equal configurations are solved once;
+    stored outcomes need no worker. progress.step(done, count, reason or "") is called after each point.
     """
     progress = progress or Logged()
     keys = [outcome_key(config) for config in configs]

@@ -15,7 +15,9 @@ from softdot.sweeps.points import SOLVED
 
 HERE = Path(__file__).parent
 SHOWN_ROWS, SHOWN_AXES = 200, 6
+"""Most rows on the page, and most axes in the picture."""
 RESULTS = (("peak.reaction_force_N", "largest force (N)"), ("peak.open_circuit_voltage_V", "largest voltage (V)"))
+"""Column of the table -> its label, for the results that are drawn."""
 COLOUR, LONGEST_LABEL = "#b5263b", 28
 
 
@@ -57,9 +59,7 @@ def draw(path: Path, rows: Sequence[Mapping[str, Any]], axes: Sequence[str]) -> 
 
 
 def _draw_points(cell: Any, pairs: Sequence[tuple[Any, float]], joined: bool) -> None:
-    """Draw the results over one axis, joined by a line where there is only that axis; a value that is no number by its
-    name.
-    """
+    """Draw results over one axis, joined by a line where it is the only one; a value that is no number by its name."""
     numbers = all(isinstance(x, int | float) and not isinstance(x, bool) for x, _ in pairs)
     places = sorted(pairs) if numbers else [(_value_label(x), y) for x, y in pairs]
     cell.plot(
@@ -77,9 +77,7 @@ def _value_label(value: Any) -> str:
 def write_report(
     path: Path, rows: Sequence[Mapping[str, Any]], axes: Sequence[str], summary: Mapping[str, Any], picture: Path
 ) -> None:
-    """Write a page that opens offline: how the points ended, picture, the first SHOWN_ROWS rows, and reasons of
-    failures.
-    """
+    """Write a page that opens offline: how the points ended, picture, first SHOWN_ROWS rows, reasons of failures."""
     environment = page_environment(HERE)
     columns = [(axis, axis) for axis in axes] + [(name, label) for name, label in RESULTS]
     page = environment.get_template("report.html").render(

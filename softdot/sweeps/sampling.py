@@ -14,6 +14,7 @@ from geometry.parameters import Finite, Table
 from softdot.config.toml import key_path
 
 MOST_POINTS = 20_000
+"""Largest number of points of a sweep."""
 Count = Annotated[int, Field(ge=1, le=MOST_POINTS)]
 
 

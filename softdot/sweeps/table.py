@@ -17,13 +17,15 @@ if TYPE_CHECKING:
 CURVE_KEYS = (
     "indentation_mm", "reaction_force_N", "film_charge_pC", "open_circuit_voltage_V", "readout_voltage_V",
 )  # fmt: skip
+"""Keys of a record with values over the load steps, whose peaks get a column."""
 STATUS_KEYS = ("status", "reason", "seconds", "config_hash")
+"""Keys of a record that tell how it ended."""
 EXCLUDED_KEYS = ("format", "softdot_version", "key", "config", *STATUS_KEYS)
+"""Keys of a record that get no column of their own."""
 
 
 def table_row(number: int, values: Mapping[str, Any], record: Record) -> dict[str, Any]:
-    """A row of the table: number of the point, values of the axes, end, peaks of the curves, and all numbers of the
-    summary.
+    """A row of the table: number of the point, values of the axes, status, peaks of the curves, numbers of the summary.
 
     Nested keys are joined by dots. The peak of a curve is its value of largest magnitude, with its sign.
     """

@@ -49,9 +49,7 @@ def with_sizes_for_accuracy(config: Config) -> Config:
 
 
 def _elastic_baseline(config: Config) -> Config:
-    """The configuration without mechanisms, slides and waveform where its path matters; else the configuration
-    itself.
-    """
+    """The configuration without mechanisms, slides and waveform where its path matters, else unchanged."""
     if not follows_path(config):
         return config
     press = config.press.model_copy(update={"path_xy_mm": (), "waveform": None})

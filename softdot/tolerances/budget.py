@@ -14,6 +14,7 @@ from softdot.tolerances.tolerances import Tolerance, shifts, tolerances
 MESH_FACTOR, CHECK_FACTOR = 2.0, 3.0
 """Element sizes of the budget and of its check, over those of the configuration."""
 NOMINAL_QUESTION, CHECK_QUESTION, END_NAMES = "derivatives", "derivatives, coarser mesh", ("upper end", "lower end")
+"""Names of the questions of a budget: those of its two meshes, and of each end of a shift."""
 
 
 @dataclass(frozen=True)

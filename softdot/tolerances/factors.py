@@ -5,6 +5,7 @@ from solve.mechanisms import Mechanism
 from solve.mechanisms.layers.property_error import PROPERTY_ERROR
 
 MEDIUM = ("modulus_factor", "thickness_factor")
+"""Factors of a layer."""
 FACTORS: dict[str, tuple[str, ...]] = {
     "effector": MEDIUM,
     "medium1": MEDIUM,

@@ -12,8 +12,8 @@ from softdot.tolerances.responses import KitPress, Response, moved_label, respon
 
 
 class Question(NamedTuple):
-    """A request for the press of a configuration: its derivatives by keys or, where that is given, the response of a
-    moved configuration.
+    """A request for the press of a configuration: derivatives by keys or, if given, the response of a moved
+    configuration.
     """
 
     config: Config

@@ -37,9 +37,7 @@ class Response(NamedTuple):
 
 
 def coarser_press(config: Config, factor: float) -> Config:
-    """The configuration in fewer load steps and on elements that are larger by a factor; never on the mesh of a
-    file.
-    """
+    """The configuration in fewer load steps on elements larger by a factor; never on the mesh of a file."""
     press = config.press.model_copy(update={"load_steps": min(config.press.load_steps, MOST_LOAD_STEPS)})
     return with_larger_elements(config, factor).model_copy(update={"press": press})
 
@@ -153,9 +151,7 @@ def slopes_label(keys: Sequence[str]) -> str:
 
 
 def moved_label(config: Config) -> str:
-    """The words for the response of a moved configuration on another one's mesh, as part of the name of what is
-    kept.
-    """
+    """The words for the response of a moved configuration on another's mesh, as part of the name of what is kept."""
     return f"on the mesh of {config_hash(config)}"
 
 

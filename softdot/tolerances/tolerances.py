@@ -15,6 +15,7 @@ from softdot.config.schema import Config
 from softdot.tolerances.factors import factor_key
 
 LAYER_NAMES = {"medium1": "medium 1", "medium2": "medium 2"}
+"""Layer -> its name in the budget."""
 DIFFERENCE_STEP_MM = 1e-6
 """Step of the central differences of a dot's radius."""
 
@@ -129,9 +130,7 @@ def _cast_materials(config: Config) -> dict[str, str]:
 
 
 def _moduli(config: Config, poured: Mapping[str, str]) -> list[Tolerance]:
-    """Tolerances of the moduli of the layers. poured : layer -> the material that is cast in place of the stated
-    one.
-    """
+    """Tolerances of the moduli of the layers. poured : layer -> the material that is cast in its place."""
     found = []
     for layer in reversed(layers(config.segment)):
         material = poured.get(layer.name, layer.material)

@@ -32,6 +32,7 @@ from solve.solution.full_load import StoppedShortError
 from solve.solution.linear import LinearSolveError
 
 PRESS_ERRORS = InputError, LinearSolveError, MeshingError, StoppedShortError
+"""Errors of a press on larger elements, after which the uncertainty has no such part."""
 MISSING_NOTES = {
     "path": "what the tolerances of the materials do is not estimated here, since this press depends on its path; "
     "softdot kit calculates it",
@@ -104,7 +105,7 @@ def _pressed_on_larger_elements(press: Callable[[float], Found]) -> dict[float, 
 
 
 def fill_cache(config: Config) -> None:
-    """Calculate what uncertainty needs besides the press itself and leave it in the cache: it may run beside the
+    """Calculate what uncertainty needs besides the press itself, and leave it in the cache; may run beside the
     press.
     """
     with suppress(*PRESS_ERRORS):

@@ -25,6 +25,7 @@ from solve.terms.rigid_dot import RigidDot
 from solve.terms.solid import solid_region
 
 FREE = np.nan
+"""Marks a displacement that is not prescribed."""
 MAX_ITERATIONS = 60  # an interface that peels opens about one node an iteration
 
 

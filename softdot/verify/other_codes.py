@@ -8,9 +8,7 @@ from importlib.resources import files
 
 @dataclass(frozen=True)
 class ByAnotherCode:
-    """A number from another code. source : code, version and mesh in words. command : of this project, that computes it
-    again.
-    """
+    """A number from another code. source : code, version and mesh in words. command : by which to compute it again."""
 
     value: float
     source: str

@@ -12,8 +12,7 @@ START = 1e-4  # radius at which the regular solution begins
 
 
 def centre_deflection(load: float, patch: float) -> float:
-    """Deflection over thickness at the centre under a pressure on r < patch a; load = F a^2 / (E t^4), F the whole
-    force.
+    """Deflection over thickness at the centre under a pressure on r < patch; load = F a^2 / (E t^4), F the force.
 
     With w in t, r in a, u in t^2 / a (Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells, 1959, eq. 231):
         u'' + u'/r - u/r^2 = -(1 - nu) w'^2 / (2 r) - w' w''

@@ -28,7 +28,7 @@ def named_decoders(names: str) -> list[str]:
 
 
 def decoder_input(reader: Reader, heard: Voltages) -> Track | PressedCells:
-    """The input of all decoders: the track of a slide, or the charges of presses. InputError where there is nothing to
+    """The input of all decoders: the track of a slide, or the charges of presses. InputError where nothing is to be
     read.
     """
     quiet = without_mains(heard)

@@ -69,7 +69,7 @@ def _rival_starts(starts: list[tuple[_Start, ...]]) -> list[_Start]:
 
 
 def _best_rival(reader: Reader, window: Voltages, step: float, many: int, rivals: list[_Start]) -> _Start:
-    """Of the rivals that explain nearly as much as the best, the one whose dots leave least of the voltages."""
+    """The rival whose dots leave least of the voltages, among those that explain nearly as much as the best."""
     most = max(one.score for one in rivals)
     near = [one for one in rivals if one.score > LEAST_RIVAL_SHARE * most]
     if len(near) == 1:

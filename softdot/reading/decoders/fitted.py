@@ -87,9 +87,7 @@ class Track:
         return self.fit.templates.posture
 
     def place_mm(self, time_s: Floats) -> Floats:
-        """Place (t,) of the array's middle from that of the first cell; beyond the ends it goes on at the mean
-        speed.
-        """
+        """Place (t,) of the array's middle from that of the first cell; beyond the ends it moves at the mean speed."""
         pitch, passed = self.fit.pitch_mm, self.passed_s
         speed = self.posture.speed_mm_per_s
         inside = np.interp(time_s, passed, pitch * np.arange(len(passed)))

@@ -22,12 +22,15 @@ from softdot.reading.motion import array_path, press_times
 from softdot.reading.voltages import Reader, Voltages, record_voltages
 
 TRAINING_CELLS, SEED = 600, 1
+"""Number of cells on which the network is trained, and the seed of their choice."""
 HALF_WINDOW_MM, WINDOW_STEP_MM = 6.0, 0.5
+"""Way before and behind the middle of a cell that the network sees, and its step."""
 PLACE_ERRORS_MM = (-0.15, 0.0, 0.15)
 """Errors of the place at which each cell is shown in training, as a track is not exact."""
 GAP_CELLS, GAP_SHARE = 4, 0.15
 """Blank cells in a row, and their share of all: they stand for what comes before a line and behind it."""
 HIDDEN_LAYERS, MOST_EPOCHS, WEIGHT_PENALTY = (64,), 300, 1e-2
+"""Nodes of the hidden layers, largest number of epochs, and the penalty on the squares of the weights."""
 
 
 def decode(reader: Reader, seen: Track | PressedCells) -> DecodedCells:

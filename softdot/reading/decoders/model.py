@@ -23,7 +23,9 @@ from softdot.reading.motion import ArrayPath
 from softdot.reading.voltages import Reader, Voltages, averaged_voltages, charges_of_lone_dots_pC, charges_pC
 
 MOST_CORRECTIONS = 3
+"""Largest number of corrections for neighbours."""
 BAND_CELLS = 4
+"""Cells apart beyond which two dots do not overlap."""
 LARGE_QUANTILE, SMALL_SHARE, LEAST_THRESHOLD = 0.98, 0.3, 0.2
 """Share of the dots below the large amplitudes; shares of the gain below which a dot is small, and never raised."""
 SPREAD_OF_MEDIAN = 1.4826  # standard deviation of a normal distribution over its median absolute deviation

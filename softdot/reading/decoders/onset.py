@@ -8,8 +8,11 @@ from softdot.reading.decoders.templates import Posture, templates
 from softdot.reading.voltages import Reader, Voltages
 
 SLOWEST_MM_PER_S, FASTEST_MM_PER_S, TRIED_SPEEDS = 0.5, 500.0, 13
+"""Range of the speeds whose templates are compared with the voltages, and their number."""
 ONSET_SIGMA, STRENGTH_QUANTILE = 6.0, 0.9
+"""Noise levels above which a mean is a signal, and the quantile of the means that measures their strength."""
 AVERAGED_SAMPLES, LEAST_GROUPS = (1, 2, 4, 8, 16, 32, 64), 20
+"""Numbers of samples in a mean that are tried, and the least number of means."""
 
 
 class NoDotError(InputError):
@@ -22,9 +25,7 @@ def noise_by_channel_V(heard: Voltages) -> Floats:
 
 
 def active_interval(heard: Voltages) -> tuple[float, float]:
-    """First and last time at which means of samples stand out of their noise, over the number of samples that shows it
-    best.
-    """
+    """First and last time at which means of samples stand out of their noise, over the length that shows it best."""
     noise = np.maximum(noise_by_channel_V(heard), 1e-6 * np.abs(heard.voltage_V).max() + 1e-15)
     best, first, last = 0.0, 0, 0
     for many in AVERAGED_SAMPLES:

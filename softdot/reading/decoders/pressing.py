@@ -16,8 +16,11 @@ from softdot.reading.line import cell_pitch_mm, dot_places_mm, dots_of_cells
 from softdot.reading.voltages import Reader, Voltages, restored_charge_pC
 
 OFFSET_STEPS_MM = (0.8, 0.4, 0.2, 0.1)
+"""Steps of the offset around the best one, coarse to fine."""
 NEIGHBOUR_PASSES = 2
+"""Number of times that cells are found beside the neighbours of the last pass."""
 CHUNK_CELLS = 100
+"""Cells whose patterns are held together, which bounds the memory."""
 
 
 @dataclass(frozen=True)

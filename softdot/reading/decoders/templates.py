@@ -15,9 +15,11 @@ from softdot.reading.voltages import Reader, Voltages, readout_voltages
 from solve.readout.amplifier import input_of
 
 DOT_ROWS = 3
+"""Rows of dots in a cell."""
 SAMPLE_MM = 0.1
 """Way over which samples are averaged before they are compared with templates; finer ones contain nothing more."""
 PASSING_STEP_MM, PASSING_MARGIN_MM = 0.02, 0.5
+"""Step of the places at which a dot is passed, and their margin beyond the reach of the array."""
 TAIL_TIME_CONSTANTS, LONGEST_TAIL_MM = 5.0, 12.0
 """Time constants of the input for which a template goes on, but no further than two cells."""
 
@@ -62,9 +64,7 @@ class DotTemplates:
 
 @dataclass(frozen=True)
 class LagSpline:
-    """A smooth function of time, known at first_s + i step_s by the coefficients of its cubic spline, and zero
-    beyond.
-    """
+    """A smooth function of time, known at first_s + i step_s by coefficients of its cubic spline, and zero beyond."""
 
     first_s: float
     step_s: float
@@ -88,9 +88,7 @@ def lag_spline(table: Floats, first_s: float, step_s: float) -> LagSpline:
 
 
 def average_samples(heard: Voltages, speed_mm_per_s: float) -> tuple[Voltages, int]:
-    """The voltages as means of samples that each span at most SAMPLE_MM at this speed, and the number of samples in a
-    mean.
-    """
+    """Means of the voltages over samples that span at most SAMPLE_MM at this speed, and their number in a mean."""
     many = max(1, int(SAMPLE_MM / (speed_mm_per_s * heard.step_s)))
     count = len(heard.time_s) // many
     if many == 1 or count < 4:

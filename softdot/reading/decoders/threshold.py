@@ -16,6 +16,7 @@ from softdot.reading.line import cell_pitch_mm, cells_from, dot_places_mm
 from softdot.reading.voltages import Reader, restored_charge_pC
 
 LEVEL_STEP_MM, PEAK_WIDTH_MM = 0.1, 1.0
+"""Step of the grid of charges along the line, and the width within which a peak is taken."""
 LARGE_QUANTILE, THRESHOLD_SHARE = 0.95, 0.5
 """The threshold is half of the level that one of twenty places exceeds."""
 

@@ -36,9 +36,7 @@ def track_slide(reader: Reader, heard: Voltages) -> Track:
 
 
 def _passing_times(fit: CellFit, middle: float, onset: float, end: float) -> Floats:
-    """Time at which each cell is passed, from the first with any signal to the last; linear between middles of
-    blocks.
-    """
+    """Time (c,) at which each cell with any signal, and those between, is passed; linear between middles of blocks."""
     while middle - fit.pitch_s > onset - 0.5 * fit.pitch_s:
         middle -= fit.pitch_s
     pitch, speed = fit.pitch_s, fit.templates.posture.speed_mm_per_s
@@ -68,9 +66,7 @@ def _passing_times(fit: CellFit, middle: float, onset: float, end: float) -> Flo
 
 
 def _pitch_s(known: list[tuple[float, float]], before: float) -> float:
-    """Time from cell to cell by a straight line through the middles of blocks; the earlier value where there is one
-    block.
-    """
+    """Time from cell to cell by a straight line through the middles of blocks; the earlier value for one block."""
     if len(known) < 2:
         return before
     numbers, centres = np.array(known).T

@@ -58,8 +58,8 @@ class StoppedDesignError(RuntimeError):
 
 
 def design_record(task: DesignTask) -> dict[str, Any]:
-    """The record of a design: its status as of a point of a sweep, its readings by depth, and the least of these.
-    Raises nothing.
+    """The record of a design: status as of a point of a sweep, readings by depth, and the least of these. Raises
+    nothing.
 
     readings : each with depth, right characters, all characters, force, and crosstalk. least : the one with the least
     depth at which enough characters are read, None where there is none.
@@ -122,9 +122,7 @@ def least_force(kernel: ArrayKernel, task: DesignTask) -> dict[str, Any]:
 
 
 def depths(deepest: float, readings: list[dict[str, Any]], accuracy: float) -> Iterator[float]:
-    """The deepest depth, and then the next ones by the last reading. readings : filled by the caller between the
-    steps.
-    """
+    """The deepest depth, and then the next ones by the last reading. readings : appended by the caller in between."""
     yield deepest
     low, high = LEAST_DEPTH_SHARE * deepest, deepest
     if readings[-1]["accuracy"] < accuracy:
@@ -180,9 +178,7 @@ def forces_N(kernel: ArrayKernel, reading: LineReading) -> Floats:
 
 
 def crosstalk_percent(kernel: ArrayKernel, depth_mm: float) -> float:
-    """Largest open-circuit voltage of a segment over that of another one, over whose middle a dot presses, in
-    percent.
-    """
+    """Largest open-circuit voltage of a segment over that of another one, above the middle of which a dot presses."""
     x, y = kernel.centres_mm.T
     voltage = kernel.of_one(x, y, np.full(len(x), depth_mm))[0] / kernel.capacitance_pF
     share = np.abs(voltage / np.diagonal(voltage)[:, None])

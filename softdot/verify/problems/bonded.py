@@ -24,7 +24,7 @@ def neo_hookean_rubber(poisson_ratio: float) -> InvariantLaw:
 def apparent_modulus(
     shape: Grid, law: InvariantLaw, area: float, half_height: float, hold: Callable[[Floats], None]
 ) -> float:
-    """Apparent modulus, MPa, of the upper half of a layer: bonded on top, symmetric at z = 0. hold : sets further
+    """Apparent modulus, MPa, of the upper half of a layer, bonded on top, symmetric at z = 0. hold : further
     supports.
     """
     body = solid_body(shape.points, law, shape.tets)
@@ -38,9 +38,7 @@ def apparent_modulus(
 
 
 def strip_modulus(half_width: float, height: float, poisson_ratio: float, n: int = 4) -> float:
-    """Apparent modulus, MPa, of a long strip: one element in y without strain there; elements shrink towards the
-    edge.
-    """
+    """Apparent modulus, MPa, of a long strip without strain in y; elements shrink towards the edge."""
     layer = height / 2
     x = half_width - graded_coordinates(0.0, half_width, layer / (2 * n), min(layer, half_width / n))[::-1]
     z = layer - graded_coordinates(0.0, layer, layer / (2 * n), layer / n)[::-1]

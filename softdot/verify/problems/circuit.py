@@ -9,6 +9,7 @@ from solve.physics import Physics
 from solve.readout.amplifier import amplify
 
 FILM_F, CHARGE_C = 100e-12, 1e-9
+"""Capacitance of the film, and charge at the end of the ramp."""
 TIME_S = np.linspace(0.0, 1.0, 4001)
 FREQUENCY_HZ = 20.0
 

@@ -20,6 +20,7 @@ SIZES = (12.0, 24.0)
 POISSON = 0.3
 PLANE_MODULUS = 1.0 / (1.0 - POISSON**2)  # E* for E = 1
 SHEAR = 0.5 / (1.0 + POISSON)
+"""Shear modulus for a Young's modulus of 1."""
 LAW = InvariantLaw(SHEAR / 2.0, 0.0, 0.0, 0.0, bulk_modulus(SHEAR, POISSON))
 
 
@@ -41,9 +42,7 @@ def body_on_smooth_base(shape: Grid, size: float) -> tuple[ElasticBody, Floats]:
 
 
 def hertz(size: float) -> Floats:
-    """Force, radius of the area in contact, and radius by the second moment of the pressure, a^2 = 5/2 <r^2>, for one
-    size.
-    """
+    """Force, radius of the area in contact, and radius by the second moment of the pressure, a^2 = 5/2 <r^2>."""
     edge = np.linspace(0.955, 1.06, 8)
     inner = np.concatenate([np.linspace(0.0, 0.8, 6), [0.86, 0.9, 0.94], edge, [1.1, 1.16]])
     shape = cylinder(size, inner, 0.1)

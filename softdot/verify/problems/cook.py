@@ -12,6 +12,7 @@ from solve.materials.laws import InvariantLaw, MediumLaw
 
 TRACTION = 6.25  # upwards on the right edge
 THICKNESS = 4.0
+"""Thickness of the slice in y, mm."""
 SHEAR, BULK = 80.194, 400889.8
 """Shear and bulk modulus, MPa."""
 

@@ -8,6 +8,7 @@ from softdot.verify.problem import Problem
 from solve.materials.laws import InvariantLaw
 
 MU = 1.0
+"""Shear modulus of the wall."""
 LAW = InvariantLaw(MU / 2.0, 0.0, 0.0, 0.0, 1e8)
 STRETCH = 1.5
 """Stretch of the inner radius, 1; the outer radius is 2."""

@@ -12,18 +12,19 @@ from solve.materials.laws import InvariantLaw
 from solve.terms.unilateral_interface import UnilateralInterface, opening_nodes, unilateral_interface
 
 YOUNG, POISSON = 1.0, 0.3
+"""Elastic constants of the beam; lengths are in depths of an arm."""
 SHEAR = YOUNG / (2.0 * (1.0 + POISSON))
 PLANE = YOUNG / (1.0 - POISSON**2)
 LAW = InvariantLaw(0.5 * SHEAR, 0.0, 0.0, 0.0, YOUNG / (3.0 * (1.0 - 2.0 * POISSON)))
 DEPTH, WIDTH, LENGTH = 1.0, 0.5, 20.0
+"""Depth of an arm, width and length of the beam."""
 OPEN_CRACK, CLOSED_CRACK = 10.0, 7.0
+"""Lengths of the crack in the two tests."""
 LOAD = 1e-6
 
 
 def split_beam(crack: float) -> tuple[ElasticBody, UnilateralInterface, Floats]:
-    """Both arms, the patch at z = h and 0 <= x < crack where they are not joined, and prescribed displacements (n,
-    3).
-    """
+    """Both arms, the patch at z = h and 0 <= x < crack where they are apart, and prescribed displacements (n, 3)."""
     z = np.linspace(0.0, 2.0 * DEPTH, 5)
     shape = grid((np.linspace(0.0, LENGTH, 41), [0.0, WIDTH], z))
     points, tets = shape.points, shape.tets.copy()

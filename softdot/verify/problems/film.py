@@ -14,10 +14,13 @@ from solve.materials.parameters import VACUUM_PERMITTIVITY, PiezoelectricFilm
 from solve.terms.film import FilmRegion, film_region
 
 YOUNG, POISSON, D31, EPSILON = 2e9, 0.29, 23e-12, 12.0 * VACUUM_PERMITTIVITY
+"""Young's modulus (Pa), Poisson's ratio, d31 (C/N) and permittivity (F/m) of the film."""
 EVERYWHERE = np.array([[-np.inf, np.inf, -np.inf, np.inf]])
+"""An electrode over the whole film."""
 VOLTAGE_UNIT = 1e9  # the unit of voltage and Pa of stress that make all entries of the tangent alike
 STRESS_UNIT = 1e9
 STRAIN = 1e-6
+"""Strain of the stretched film."""
 STRONG_D31 = 115e-12  # C/N, five times that of PVDF: a quarter of the energy couples
 
 
@@ -41,9 +44,7 @@ def scaled_law(d31: float) -> FilmLaw:
 
 
 def stretch_film(open_circuit: bool, d31: float) -> tuple[float, float]:
-    """Stress (Pa) per strain in direction 1, and charge (C), of a free film of 1 m in all directions that is
-    stretched.
-    """
+    """Stress (Pa) per strain in direction 1, and charge (C), of a free film of 1 m in all directions."""
     shape = grid([np.linspace(0.0, 1.0, 4)] * 3, jitter=0.2)
     numbers = np.arange(shape.points.size).reshape(-1, 3)
     body = ElasticBody(shape.points, numbers, numbers.size)
@@ -66,6 +67,7 @@ def open_over_short() -> float:
 
 
 FILM, SUBSTRATE, SOFT, CURVATURE, LENGTH = 28e-6, 500e-6, 0.05 * YOUNG, 0.05, 2e-3
+"""Thickness of film and substrate (m), modulus of the substrate (Pa), curvature (1/m) and length (m)."""
 
 
 def unimorph_voltage() -> float:
@@ -98,6 +100,7 @@ def _neutral_axis() -> float:
 
 
 BIMORPH_LENGTH, BIMORPH_WIDTH, LAYER = 0.1, 5e-3, 0.5e-3
+"""Length, width and thickness of one layer of the bimorph, m."""
 BIMORPH_D31 = 23e-12
 """Coefficient of the bimorph, C/N, with d31 Y = 0.046 C/m2."""
 

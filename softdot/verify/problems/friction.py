@@ -13,6 +13,7 @@ from softdot.verify.problem import Problem
 from solve.materials.laws import InvariantLaw, bulk_modulus
 
 DEPTH, SHEAR, POISSON, COEFFICIENT = 0.04, 1.0, 0.45, 0.3
+"""Compression of a column of height 1, shear modulus, Poisson's ratio and coefficient of friction."""
 COMPRESSED_HEIGHT = 1.0 - DEPTH
 """Height of the compressed column."""
 
@@ -37,9 +38,7 @@ def slip_limit() -> float:
 
 
 def tangential_force(*shares: float) -> float:
-    """Force per area along the plate after it was pressed and then dragged in turn to these shares of the slip
-    limit.
-    """
+    """Force per area along the plate, pressed and then dragged in turn to these shares of the slip limit."""
     block = grid([np.linspace(0.0, 1.0, 3)] * 3)
     law = InvariantLaw(SHEAR / 2.0, 0.0, 0.0, 0.0, bulk_modulus(SHEAR, POISSON))
     column = DraggedBlock(block, law, None, COEFFICIENT, level=True)

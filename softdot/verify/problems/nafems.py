@@ -49,9 +49,7 @@ def elliptic_mesh(n: int, heights: Floats) -> Grid:
 
 
 def stress_yy(body: ElasticBody, tets: np.ndarray, node: int) -> float:
-    """Stress along y at a corner node: mean over its elements of deviatoric stress and nodal pressure, for small
-    strain.
-    """
+    """Stress along y at a corner node for small strain: mean over its elements of deviatoric stress and pressure."""
     mine = np.flatnonzero((tets[:, :4] == node).any(axis=1))
     reference = np.vstack([np.zeros(3), np.eye(3)])
     gradient, _ = physical_gradients(body.points[tets[mine]], quadratic(reference)[1], np.ones(4))

@@ -1,6 +1,4 @@
-"""A slice and a solid that other codes have solved too: on the same mesh, with their own elements, contact and
-solver.
-"""
+"""A slice and a solid that other codes have solved too, on the same mesh with their own elements and contact."""
 
 import numpy as np
 

@@ -13,7 +13,9 @@ from solve.materials.laws import LinearLaw, bulk_modulus
 THIN, THICK = 0.02, 0.2  # of the plates of radius 1
 POISSON = 0.3
 SMALL_PRESSURE = 1e-6
+"""Pressure over E at which the answer is linear."""
 STRIP_LENGTH, STRIP_WIDTH, STRIP_THICKNESS, STRIP_DEFLECTION = 1.0, 0.02, 5e-4, 0.05
+"""Length, width, thickness and deflection of the strip."""
 NON_LINEAR_LOAD = 27.0
 """Load F a^2 / (E t^4) whose deflection is about the thickness."""
 
@@ -83,8 +85,7 @@ def strip_force() -> float:
 
 
 def strip_force_by_membrane() -> float:
-    """Force of the line over E by membrane theory: 8 E A (d / l)^3 over the length between the ends of the boundary
-    layers.
+    """Force of the line over E by membrane theory: 8 E A (d / l)^3, l between the ends of the boundary layers.
 
     A strip under tension N bends at each clamp and under the line within sqrt(E I / N), as a beam under tension does: d
     = V / N (l/2 - 2 sqrt(E I / N)); the strain 2 (d / l)^2 of the straight part makes N.
@@ -99,9 +100,7 @@ def strip_force_by_membrane() -> float:
 
 
 def _layer_stretch(slope: float, layer: float, half: float) -> float:
-    """The share of the boundary layers in the mean of w'^2 / 2, with w' = slope (1 - exp(-x / layer)) at both ends of a
-    half.
-    """
+    """Share of the boundary layers in the mean of w'^2 / 2, w' = slope (1 - exp(-x / layer)) at both ends of a half."""
     return 0.5 * slope**2 * (2.0 * layer - 2.0 * 1.5 * layer) / half
 
 

@@ -12,7 +12,9 @@ from softdot.config.loading import config_from
 from softdot.verify.problem import Problem
 
 SHARE, TIME_S = 0.8, 0.2
+"""Share of the modulus that relaxes, and its relaxation time."""
 RISE_S, HOLD_S = 1e-6, 0.4
+"""Times of the waveform: rise to the full depth, and hold."""
 
 
 def relaxed_share() -> float:

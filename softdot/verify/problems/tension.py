@@ -18,6 +18,7 @@ from solve.materials.parameters import Hyperfoam, Knowles, Linear, MooneyRivlin,
 
 Energy = Callable[[complex, complex], complex]  # of the stretch along, and the two alike across
 STRETCH = 4.0
+"""Stretch along the pull, a strain of 300 %."""
 POISSON = 0.495
 DERIVATIVE_STEP = 1e-30  # of a complex argument: no difference is taken, so no digit is lost
 
@@ -140,6 +141,7 @@ LAWS = {
         "Hooke's law between Green-Lagrange strain and second Piola-Kirchhoff stress",
     ),
 }
+"""Law -> material, energy in principal stretches, and source."""
 
 PROBLEMS = tuple(
     Problem(
