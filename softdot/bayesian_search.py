@@ -1,4 +1,4 @@
-"""What searches of designs by Gaussian processes share: the process, and which of many candidates are tried next."""
+"""The common parts of searches for designs by Gaussian processes: the process, and the choice among candidates."""
 
 import warnings
 from typing import TYPE_CHECKING
@@ -10,11 +10,11 @@ from foundation.arrays import Floats
 if TYPE_CHECKING:
     from sklearn.gaussian_process import GaussianProcessRegressor
 
-STEP = 0.12
-"""Of candidates beside a good design, in shares of an axis."""
+STEP_DEVIATION = 0.12
+"""Standard deviation of steps beside a good design, in shares of an axis."""
 
 
-def fitted_process(
+def fit_process(
     features: Floats, target: Floats, length: tuple[float, float, float], noise: float
 ) -> "GaussianProcessRegressor":
     """A linear trend, a smooth deviation from it, and noise, fitted to a target (n,) at features (n, f).
@@ -36,11 +36,11 @@ def fitted_process(
 
 
 def steps_beside(place: Floats, count: int, random: np.random.Generator) -> Floats:
-    """Candidates (count, d) by chance beside a place (d,) in shares of the axes."""
-    return np.clip(place + STEP * random.standard_normal((count, len(place))), 0.0, 1.0)
+    """Random candidates (count, d) beside a place (d,), in shares of the axes."""
+    return np.clip(place + STEP_DEVIATION * random.standard_normal((count, len(place))), 0.0, 1.0)
 
 
-def largest_apart(gains: Floats, places: Floats, known: Floats, count: int, apart: float) -> list[int]:
+def choose_apart(gains: Floats, places: Floats, known: Floats, count: int, apart: float) -> list[int]:
     """Numbers of at most count candidates with the largest gains (n,), each farther than apart from known ones
     and from the others.
 

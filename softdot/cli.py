@@ -57,7 +57,7 @@ class _Interrupt:
     """The handler of Ctrl-C and SIGTERM: raises KeyboardInterrupt, which some libraries turn into another error.
 
     It waits for the end of an import and of a compilation: VTK, whose libraries import each other, crashes where one of
-    them fails to, and LLVM prints and forgets what is raised in its callbacks.
+    them fails to, and LLVM prints and forgets errors that are raised in its callbacks.
     """
 
     def __init__(self) -> None:

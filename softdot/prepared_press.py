@@ -1,5 +1,6 @@
-"""What a press needs, of one configuration: the solver's model, the dot, the parts, the mesh, and the press itself.
-Heavy libraries are imported inside the methods, so that a configuration that is refused is refused at once.
+"""The press of one configuration, prepared: the solver's model, the dot, the parts, the mesh, and the press itself.
+
+Heavy libraries are imported inside the methods, so that a refused configuration is refused at once.
 """
 
 from collections.abc import Callable, Sequence
@@ -41,13 +42,15 @@ class PreparedPress:
 
     @cached_property
     def layout(self) -> ArrayLayout | None:
-        """Where the segments of an array lie; None of one segment. InputError for a pitch that no standard states."""
+        """The places of the segments of an array, None for one segment. InputError for a pitch that no standard
+        states.
+        """
         config = self.config
         return None if config.array is None else array_layout(config.array, config.segment, config.dot)
 
     @cached_property
     def model(self) -> Model:
-        """What the solver is told, mechanisms switched on; of an array as one wide segment. InputError."""
+        """The solver's model with mechanisms switched on; of an array, that of one wide segment. InputError."""
         if self.layout is None:
             return model_of(self.config)
         stated = as_segment(self.config, self.layout)
@@ -55,28 +58,28 @@ class PreparedPress:
 
     @cached_property
     def checked(self) -> tuple[DotShape, list[str]]:
-        """The dot at rest and what a user should know about this design. InputError for what cannot be solved."""
+        """The dot at rest, and warnings about the design. InputError for a press that cannot be solved."""
         from softdot.checks import check_case
 
         return check_case(self.model, self.config.mesh, self.layout)
 
     @property
     def warnings(self) -> list[str]:
-        """All that a user should know before the solution. InputError for what cannot be solved."""
+        """All warnings that need no solution. InputError for a press that cannot be solved."""
         from softdot.checks import design_warnings
 
         return [*self.checked[1], *design_warnings(self.model)]
 
     @property
     def elements(self) -> float:
-        """About how many elements the mesh will have. InputError."""
+        """Expected number of elements of the mesh. InputError."""
         from softdot.checks import expected_tetrahedra
 
         return expected_tetrahedra(self.model.segment, self.dot, self.config.mesh, self.planes, self.layout)
 
     @property
     def cost(self) -> "Cost":
-        """What a run will take. InputError."""
+        """Expected cost of a run. InputError."""
         from softdot.checks import cost_of
 
         return cost_of(self.elements, self.config)
@@ -98,14 +101,14 @@ class PreparedPress:
 
     @cached_property
     def mesh(self) -> TetMesh:
-        """The conforming mesh of all that is pressed. InputError, MeshingError."""
+        """The conforming mesh of everything that is pressed. InputError, MeshingError."""
         from mesh.symmetry import mirrored_mesh
 
         return mirrored_mesh(self.solved_mesh).tet_mesh
 
     @cached_property
     def solved_mesh(self) -> TetMesh:
-        """What is solved: the mesh of a half or a quarter where all is symmetric. InputError, MeshingError."""
+        """The mesh that is solved: of a half or a quarter where all is symmetric. InputError, MeshingError."""
         import mesh
         from mesh.array.mesh import array_mesh
 
@@ -129,7 +132,7 @@ class PreparedPress:
 
     @property
     def mesh_quality(self) -> dict[str, Any]:
-        """Numbers about the mesh that is solved, as in summary.json; of an array without what its gaps change."""
+        """Numbers on the solved mesh, as in summary.json."""
         from mesh.quality import measure_quality
 
         sizes = {} if self.config.mesh.file is not None else self.sized.mesh.sizes_mm
@@ -138,9 +141,8 @@ class PreparedPress:
         return {name: value for name, value in found.items() if name not in unknown}
 
     def press(self, on_step: OnStep | None = None) -> Pressed:
-        """The press, as far as it converged: .converged says whether, .failure why not. InputError, MeshingError.
-
-        A press that ended early warns by ConvergenceWarning, what else is to be doubted by ResultWarning.
+        """The press, as far as it converged; its .converged says whether, .failure why not. InputError,
+        MeshingError.
         """
         if "_pressed" not in self.__dict__:
             pressed = self.__dict__["_pressed"] = Pressed(self, self.solve(on_step))
@@ -163,11 +165,11 @@ class PreparedPress:
 
     @property
     def is_amplified(self) -> bool:
-        """Whether something stands between the film and what is read."""
+        """Whether an amplifier stands between the film and the reading."""
         return self.model.amplifier is not None
 
     def course(self, result: PressResult) -> "PressCourse":
-        """The course of a result in time: drive, force, charges, voltages, and what each amplifier gives."""
+        """The course of a result in time: drive, force, charges, voltages, and the voltage of each amplifier."""
         from solve.readout.course import course
 
         return course(result, self.model.press, self.model.amplifier, self.model.physics)
@@ -189,7 +191,7 @@ def array_model(model: Model, stated: Config) -> Model:
 
 
 def press_key(prepared: PreparedPress, tet_mesh: TetMesh) -> str:
-    """Hash of all that a press depends on: configuration, the file of its waveform, mesh and program."""
+    """The hash of everything that a press depends on: configuration, the file of its waveform, mesh and program."""
     from foundation.cache import data_hash
     from foundation.source_hash import source_hash
     from mesh.types import mesh_hash

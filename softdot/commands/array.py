@@ -1,4 +1,6 @@
-"""softdot array: crosstalk of several segments, what stands for one of them, and the press of a cell."""
+"""softdot array: crosstalk of several segments, the lone segment that stands for one of them, and the press of a
+cell.
+"""
 
 from __future__ import annotations
 

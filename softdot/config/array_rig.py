@@ -12,11 +12,10 @@ from softdot.config.schema import Config
 
 
 def as_one_segment(config: Config, runs: Sequence[RunTable]) -> tuple[Config, tuple[RunTable, ...]]:
-    """The configuration with an electrode on each segment of its array, and the runs with their dots over the pressed
-    ones.
+    """The configuration with an electrode on each segment, and the runs with their dots over the segments they press.
 
-    Where there is no array both are returned unchanged. InputError for a run over a segment that is not there, and for
-    an array with islands, grooves or a grid, which no mesh of one segment has.
+    Without an array both are returned unchanged. InputError for a run over a segment that is not there, and for an
+    array with islands, grooves or a grid, which no mesh of one segment has.
     """
     if config.array is None:
         for number, run in enumerate(runs):

@@ -1,4 +1,4 @@
-"""What is wrong with a configuration, in a sentence: the dotted key, its value, what is allowed."""
+"""The mistake in a configuration, in a sentence: the dotted key, its value, and the allowed values."""
 
 import json
 import re
@@ -22,7 +22,7 @@ BOUNDS = {
 """Kind of a pydantic error about a number -> the bound in its context, and the word for it."""
 LENGTHS = {"too_short": ("min_length", "at least"), "too_long": ("max_length", "at most")}
 """Kind of a pydantic error about a list -> the length in its context, and the word for it."""
-KINDS = {
+REQUIREMENTS = {
     "float_type": "must be a plain number; its unit is part of the key",
     "float_parsing": "must be a plain number; its unit is part of the key",
     "int_type": "must be a whole number",
@@ -36,7 +36,7 @@ KINDS = {
     "model_type": "must be a table",
     "model_attributes_type": "must be a table",
 }
-"""Kind of any other pydantic error -> what a value must be."""
+"""Kind of any other pydantic error -> the requirement on a value, in words."""
 
 
 def sentence(error: ValidationError, tables: Mapping[str, Any], model: type[Table]) -> str:
@@ -89,7 +89,7 @@ def _explain(problem: ErrorDetails, tables: Mapping[str, Any], model: type[Table
     if kind in LENGTHS:
         name, word = LENGTHS[kind]
         return f"{key} = {value_text(problem['input'])}: must have {word} {_value_count(context[name])}"
-    text = KINDS.get(kind, problem["msg"][:1].lower() + problem["msg"][1:])
+    text = REQUIREMENTS.get(kind, problem["msg"][:1].lower() + problem["msg"][1:])
     return f"{key} = {value_text(problem['input'])}: {text}"
 
 

@@ -171,9 +171,7 @@ def lvm_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
 
 
 def waveform_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
-    """The log in a binary file of Rigol, Tektronix, LeCroy, Keysight, Siglent, Rohde & Schwarz, Yokogawa, by
-    RigolWFM.
-    """
+    """The log in a binary file of Rigol, Tektronix, LeCroy, Keysight, Siglent, Rohde & Schwarz or Yokogawa."""
     from RigolWFM.wfm import Wfm  # type: ignore[import-not-found, unused-ignore]
 
     shown = [channel for channel in Wfm.from_file(str(file)).channels if channel.volts is not None]

@@ -335,9 +335,7 @@ def _agreed_unit(unit: Unit | None, beside: Sequence[str], name: str, where: str
 def _time_column_units(
     table: TextTable, row: int, column: int, units: Sequence[str], steps: Mapping[str, int], settings: Settings
 ) -> TimeColumn:
-    """The column of times with its factor to seconds: of sequence numbers, in a unit, or else in seconds.
-    InputError.
-    """
+    """The column of times and its factor to seconds: of sequence numbers, of a stated unit, or 1. InputError."""
     where = table.place(row)
     beside = [without_brackets(cells[column]) if column < len(cells) else "" for cells in (units, settings.units)]
     name, unit = split_name(table.rows[row][column], where)

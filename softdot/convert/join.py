@@ -103,9 +103,7 @@ def join_logs(logs: Sequence[NamedLog], named: Mapping[str, str], offsets_s: Seq
 def _columns(
     logs: Sequence[NamedLog], named: Mapping[str, str], align: bool
 ) -> tuple[dict[str, tuple[int, str]], dict[int, str]]:
-    """Column -> log and channel; and, to align, log -> its channel of the same quantity as the first log.
-    InputError.
-    """
+    """Column -> log and channel; and, to align, log -> its channel of the first log's quantity. InputError."""
     every = [(n, name, channel) for n, one in enumerate(logs) for name, channel in one.log.channels.items()]
     shared = {n: _shared_channel(logs[0], one) for n, one in enumerate(logs) if n > 0} if align else {}
     if named:
@@ -189,9 +187,7 @@ def _on_one_clock(
 
 
 def _clock_shift(first: NamedLog, other: NamedLog, channel: str) -> tuple[float, str, list[str]]:
-    """Seconds to add to the times of another log, by the channel it shares with the first, and a sentence.
-    InputError.
-    """
+    """Seconds to add to the times of another log, by the channel that both share, and a sentence. InputError."""
     unit = other.log.channels[channel].unit
     own = _of_unit(first, unit)
     assert own is not None

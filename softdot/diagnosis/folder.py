@@ -58,8 +58,8 @@ class Options:
 
 @dataclass
 class FullModelRuns:
-    """Runs pressed again by the full model. failure : reason where one has no equilibrium. warnings : why one is
-    missing.
+    """Runs pressed again by the full model. failure : reason where one has no equilibrium. warnings : of missing
+    runs.
     """
 
     runs: list[Resimulation] = field(default_factory=list)

@@ -1,1 +1,1 @@
-"""The fabrication kit: what a bench needs to make the segment that is simulated."""
+"""The fabrication kit: everything that a workshop needs to make the simulated segment."""

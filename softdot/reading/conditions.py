@@ -88,7 +88,7 @@ class ReadingConditions:
             raise InputError(f"--force-N = {self.force_N:g}: --mode press is driven by its depth; give --depth-mm")
 
     def with_implied_values(self, kernel: ArrayKernel) -> "ReadingConditions":
-        """The conditions with the standard, depth and scatter implied by kernel and standard. InputError for a
+        """The conditions with standard, depth and scatter as kernel and standard imply. InputError for a
         contradiction.
         """
         if self.depth_mm is not None and self.force_N is not None:

@@ -179,9 +179,7 @@ def _path_at_force(kernel: ArrayKernel, line: DotLine, path: ArrayPath, force_N:
 def _depth_of_force(
     kernel: ArrayKernel, dots: tuple[Floats, Floats, Floats], stop: Floats, force_N: float
 ) -> tuple[Floats, Bools]:
-    """Depth (t,) at which the force is reached, and whether it is above the stop (t,). dots : x, y, extra depth (t,
-    k).
-    """
+    """Depth (t,) at which the force is reached, and whether it is above the stop (t,). dots : x, y, extra depth."""
     x, y, extra = dots
 
     def excess(depth: Floats, rows: Ints) -> Floats:

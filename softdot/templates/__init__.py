@@ -1,1 +1,1 @@
-"""Designs to start from: what each states beyond the default design; its first comment says what it is."""
+"""Designs to start from: each states its difference to the default design, and its first comment describes it."""

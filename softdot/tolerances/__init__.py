@@ -1,1 +1,1 @@
-"""What may be off in a segment as it is made, in its materials and its mesh, and what that does to its answers."""
+"""Tolerances of a segment as it is made, of its materials and its mesh, and their effect on its answers."""

@@ -12,9 +12,7 @@ from softdot.tolerances.responses import KitPress, Response, moved_label, respon
 
 
 class Question(NamedTuple):
-    """A request for the press of a configuration: derivatives by keys or, if given, the response of a moved
-    configuration.
-    """
+    """A question about the press of a configuration: for derivatives by keys, or for the response of a moved one."""
 
     config: Config
     keys: tuple[str, ...] = ()

@@ -105,9 +105,7 @@ def _pressed_on_larger_elements(press: Callable[[float], Found]) -> dict[float, 
 
 
 def fill_cache(config: Config) -> None:
-    """Calculate what uncertainty needs besides the press itself, and leave it in the cache; may run beside the
-    press.
-    """
+    """Calculate what uncertainty needs besides the press, and leave it in the cache; it may run beside the press."""
     with suppress(*PRESS_ERRORS):
         _estimate_parts(config, given=False)
 

@@ -28,8 +28,6 @@ def named_decoders(names: str) -> list[str]:
 
 
 def decoder_input(reader: Reader, heard: Voltages) -> Track | PressedCells:
-    """The input of all decoders: the track of a slide, or the charges of presses. InputError where nothing is to be
-    read.
-    """
+    """The input of all decoders: the track of a slide, or the charges of presses. InputError without a signal."""
     quiet = without_mains(heard)
     return track_slide(reader, quiet) if reader.presses is None else pressed_cells(reader, quiet)

@@ -99,8 +99,8 @@ class DesignRequest:
 
 
 def design_with_values(base: Mapping[str, Any], name: str, values: Mapping[str, Any]) -> TriedDesign:
-    """The design with these values in the tables, or the reason for its refusal. InputError for a key that leads
-    nowhere.
+    """The design with these values in the tables, or the reason for its refusal. InputError for a key without a
+    table.
     """
     tables = tables_with_values(base, values)
     try:

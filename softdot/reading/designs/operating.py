@@ -58,11 +58,10 @@ class StoppedDesignError(RuntimeError):
 
 
 def design_record(task: DesignTask) -> dict[str, Any]:
-    """The record of a design: status as of a point of a sweep, readings by depth, and the least of these. Raises
-    nothing.
+    """The record of a design: status as of a point of a sweep, readings by depth, and the least of these.
 
-    readings : each with depth, right characters, all characters, force, and crosstalk. least : the one with the least
-    depth at which enough characters are read, None where there is none.
+    Raises nothing. readings : each with depth, right characters, all characters, force, and crosstalk. least : the one
+    with the least depth at which enough characters are read, None where there is none.
     """
     begun = time.perf_counter()
     try:

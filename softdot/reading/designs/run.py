@@ -1,4 +1,4 @@
-"""The search for designs on all cores: its folder, which keeps what was pressed and read, and its results."""
+"""The search for designs on all cores: its folder, which keeps presses and readings, and its results."""
 
 import json
 from collections.abc import Iterator

@@ -1,8 +1,8 @@
-"""Which designs are tried next, and which are better than all others in something.
+"""The designs that are tried next, and those that no other design beats in everything.
 
-The logarithm of the least force is modelled by a Gaussian process over the axes of the space, and the designs with
-the largest expected improvement (Jones, Schonlau and Welch, J. Global Optim. 13, 1998, 455) are tried next. A choice
-from a list is a corner of a simplex, so that no two values of it are nearer than others.
+The logarithm of the least force is modelled by a Gaussian process over the axes of the space, and the designs with the
+largest expected improvement (Jones, Schonlau and Welch, J. Global Optim. 13, 1998, 455) are tried next. A choice from a
+list is a corner of a simplex, so that no two values of it are nearer than others.
 """
 
 from collections.abc import Sequence
@@ -12,20 +12,23 @@ import numpy as np
 from scipy.stats import norm, qmc
 
 from foundation.arrays import Bools, Floats
-from softdot.bayesian_search import fitted_process, largest_apart, steps_beside
+from softdot.bayesian_search import choose_apart, fit_process, steps_beside
 from softdot.sweeps.sampling import Axis, share_of, value_at_share
 
-FEWEST = 3
-"""Designs that read, below which the next ones fill the space instead."""
-WORSE = 1.5
-"""What a design that does not read, or cannot be solved, counts as: so many times the largest force of all."""
-SPREAD, NEAR, SWITCH = 9, 512, 0.2
-"""2^SPREAD candidates all over the space and NEAR beside the best design: steps along axes, and the share of its
-choices that change."""
-APART = 0.1
-LENGTH, NOISE = (0.3, 1.0, 10.0), 4e-3
-"""Over which the deviation from the trend changes, in edges of the space: least, guess, largest. Variance of the
-logarithm of the least force by halving alone, in units of that between designs."""
+FEWEST_READING = 3
+"""Least number of designs that read; below it the next ones fill the space instead."""
+FAILURE_FACTOR = 1.5
+"""A design that does not read, or cannot be solved, counts as this factor times the largest force of all."""
+LOG2_CANDIDATES, NEAR_CANDIDATES, CHOICE_SWITCH_SHARE = 9, 512, 0.2
+"""Candidates all over the space, as a power of two, and number of those beside the best design, with the share of their
+choices that change.
+"""
+LEAST_DISTANCE = 0.1
+"""Least distance of two tried designs, in shares of the axes."""
+LENGTH_RANGE, HALVING_VARIANCE = (0.3, 1.0, 10.0), 4e-3
+"""Length over which the deviation from the trend changes, in edges of the space: least, guess, largest. Variance of the
+logarithm of the least force by halving alone, in units of that between designs.
+"""
 
 
 def propose(
@@ -38,10 +41,10 @@ def propose(
     known = np.array([[share_of(axis, value) for axis, value in zip(axes, row, strict=True)] for row in rows])
     read = [number for number, force in enumerate(forces_N) if force is not None]
     best = known[min(read, key=lambda number: forces_N[number] or 0.0)] if read else None
-    pool = [rounded(axes, shares) for shares in candidates(axes, best, seed)]
+    pool = [rounded_values(axes, shares) for shares in candidates(axes, best, seed)]
     shares = np.array([_shares(axes, row) for row in pool])
-    gain = np.ones(len(pool)) if len(read) < FEWEST else expected_gain(axes, known, forces_N, shares)
-    chosen = largest_apart(gain, _features(axes, shares), _features(axes, known), count, APART)
+    gain = np.ones(len(pool)) if len(read) < FEWEST_READING else expected_gain(axes, known, forces_N, shares)
+    chosen = choose_apart(gain, _features(axes, shares), _features(axes, known), count, LEAST_DISTANCE)
     return [pool[number] for number in chosen]
 
 
@@ -52,11 +55,11 @@ def _shares(axes: Sequence[Axis], row: Sequence[Any]) -> list[float]:
 def candidates(axes: Sequence[Axis], best: Floats | None, seed: int) -> Floats:
     """Shares (n, d) of the axes: Sobol points all over the space, and steps by chance from the best design (d,)."""
     random = np.random.default_rng(seed)
-    spread = qmc.Sobol(len(axes), seed=random).random_base2(SPREAD)
+    spread = qmc.Sobol(len(axes), seed=random).random_base2(LOG2_CANDIDATES)
     if best is None:
         return np.asarray(spread)
-    near = steps_beside(best, NEAR, random)
-    switched = random.random(near.shape) < SWITCH
+    near = steps_beside(best, NEAR_CANDIDATES, random)
+    switched = random.random(near.shape) < CHOICE_SWITCH_SHARE
     elsewhere = random.random(near.shape)
     for number, axis in enumerate(axes):
         if axis.values is not None:
@@ -64,12 +67,15 @@ def candidates(axes: Sequence[Axis], best: Floats | None, seed: int) -> Floats:
     return np.concatenate([spread, near])
 
 
-def rounded(axes: Sequence[Axis], shares: Floats) -> tuple[Any, ...]:
+def rounded_values(axes: Sequence[Axis], shares: Floats) -> tuple[Any, ...]:
     """Values at shares (d,) of the axes, numbers between low and high to two digits, as one would make them."""
-    return tuple(_rounded(axis, value_at_share(axis, float(share))) for axis, share in zip(axes, shares, strict=True))
+    return tuple(
+        _rounded_value(axis, value_at_share(axis, float(share))) for axis, share in zip(axes, shares, strict=True)
+    )
 
 
-def _rounded(axis: Axis, value: Any) -> Any:
+def _rounded_value(axis: Axis, value: Any) -> Any:
+    """A number rounded to two digits within the bounds of its axis; a choice from a list as it is."""
     if axis.values is not None:
         return value
     return min(max(float(f"{value:.2g}"), float(axis.low or 0.0)), float(axis.high or 0.0))
@@ -89,9 +95,9 @@ def _features(axes: Sequence[Axis], shares: Floats) -> Floats:
 
 def expected_gain(axes: Sequence[Axis], known: Floats, forces_N: Sequence[float | None], wanted: Floats) -> Floats:
     """Expected improvement (m,) of the logarithm of the least force at shares wanted (m, d) by that at known (n, d)."""
-    largest = WORSE * max(force for force in forces_N if force is not None)
+    largest = FAILURE_FACTOR * max(force for force in forces_N if force is not None)
     target = np.log([largest if force is None else force for force in forces_N])
-    process = fitted_process(_features(axes, known), target, LENGTH, NOISE)
+    process = fit_process(_features(axes, known), target, LENGTH_RANGE, HALVING_VARIANCE)
     mean, deviation_of = process.predict(_features(axes, wanted), return_std=True)
     below = target.min() - mean
     score = below / deviation_of

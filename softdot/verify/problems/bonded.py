@@ -24,9 +24,7 @@ def neo_hookean_rubber(poisson_ratio: float) -> InvariantLaw:
 def apparent_modulus(
     shape: Grid, law: InvariantLaw, area: float, half_height: float, hold: Callable[[Floats], None]
 ) -> float:
-    """Apparent modulus, MPa, of the upper half of a layer, bonded on top, symmetric at z = 0. hold : further
-    supports.
-    """
+    """Apparent modulus, MPa, of the upper half of a bonded layer, symmetric at z = 0. hold : sets further supports."""
     body = solid_body(shape.points, law, shape.tets)
     prescribed = body.free_displacements()
     hold(prescribed)

@@ -7,7 +7,7 @@ import numpy as np
 
 from foundation.arrays import Floats
 from foundation.executor import Executor
-from softdot.bayesian_search import largest_apart, steps_beside
+from softdot.bayesian_search import choose_apart, steps_beside
 from softdot.progress import Progress
 from softdot.studies.paper.beyond.designs import FILMS_UM, PAPERS, Design, coordinates, design_at, sample
 from softdot.studies.paper.beyond.predictors import film
@@ -88,7 +88,7 @@ def propose(surrogate: Surrogate, trials: Sequence[DesignTrial], limits: Limits,
     known = [trial.design for trial in trials]
     for cable_pF in GOALS.values():
         gains = expected_gain(surrogate, pool, trials, limits, cable_pF)
-        chosen = largest_apart(gains, coordinates(pool), coordinates(known), EACH, APART)
+        chosen = choose_apart(gains, coordinates(pool), coordinates(known), EACH, APART)
         known += [pool[one] for one in chosen]
     return known[len(trials) :]
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from foundation.arrays import Floats
-from softdot.bayesian_search import fitted_process
+from softdot.bayesian_search import fit_process
 from softdot.studies.paper.beyond.designs import Design, coordinates
 from softdot.studies.paper.beyond.predictors import clamped_voltage_V, columns, free_voltage_V
 from softdot.studies.paper.beyond.trials import DesignPress, DesignTrial
@@ -42,7 +42,7 @@ class Surrogate:
         places = (features - self.middle) / self.spread
         presses = [[trial.presses[side] for trial in trials] for side in (0, 1)]
         self.processes = [
-            [fitted_process(places, target, LENGTH, NOISE) for target in np.log(_numbers(side)).T] for side in presses
+            [fit_process(places, target, LENGTH, NOISE) for target in np.log(_numbers(side)).T] for side in presses
         ]
 
     def draw(self, designs: Sequence[Design], draws: int, seed: int) -> Guess:
