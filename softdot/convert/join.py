@@ -67,7 +67,7 @@ def join_logs(logs: Sequence[NamedLog], named: Mapping[str, str], offsets_s: Seq
         if len(one.log.time_s) < FEWEST_SAMPLES:
             raise InputError(f"'{one.file}': has {len(one.log.time_s)} samples, at least {FEWEST_SAMPLES} are needed")
     places, shared = _columns(logs, named, align)
-    logs, said, warnings = _on_one_clock(logs, offsets_s, align, shared)
+    logs, remarks, warnings = _on_one_clock(logs, offsets_s, align, shared)
     main = min(range(len(logs)), key=lambda n: (not _has_voltage(n, places), logs[n].step_s))
     start = max(float(one.log.time_s[0]) for one in logs)
     end = min(float(one.log.time_s[-1]) for one in logs)

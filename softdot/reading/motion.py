@@ -45,7 +45,7 @@ class ArrayPath:
 
 @dataclass(frozen=True)
 class PressTimes:
-    """The times of presses: each begins a period_s after the last, the first at time 0, goes down and holds."""
+    """Times of presses: one begins every period_s, the first at time 0, goes down for down_s and holds for hold_s."""
 
     period_s: float
     down_s: float
@@ -123,7 +123,7 @@ def press_times(conditions: ReadingConditions, pitch_mm: float) -> PressTimes:
 
 
 def _press_path(count: int, pitch: float, conditions: ReadingConditions, random: np.random.Generator) -> ArrayPath:
-    """The path of an array that is set down once a period and lifted while it moves; its middle is always off alike."""
+    """The path of an array that is set down once a period and lifted while it moves, always with the same offset."""
     times = press_times(conditions, pitch)
     period, down, hold = times.period_s, times.down_s, times.hold_s
     step = down / PRESS_STEPS
