@@ -112,7 +112,7 @@ def tdms_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
             raise InputError(f"'{file}': a channel has no increment of time (wf_increment); save waveforms")
         starts = [channel.properties.get("wf_start_time") for channel in timed]
         late = [0.0 if None in (start, starts[0]) else _seconds_between(starts[0], start) for start in starts]
-        scales = [_second(channel.properties.get("wf_xunit_string", ""), file) for channel in timed]
+        scales = [_seconds_of_unit(channel.properties.get("wf_xunit_string", ""), file) for channel in timed]
         times = [by + scale * channel.time_track() for by, scale, channel in zip(late, scales, timed, strict=True)]
         units = [str(channel.properties.get("unit_string", channel.properties.get("NI_UnitDescription", "")))
                  for channel in timed]  # fmt: skip
@@ -124,14 +124,14 @@ def _seconds_between(first: Any, other: Any) -> float:
     return float(np.timedelta64(other - first) / np.timedelta64(1, "s"))
 
 
-def _clock_s(text: str) -> float:
-    """Of 10:15:30,5."""
+def _seconds_of_day(text: str) -> float:
+    """Seconds since midnight of a time of day such as 10:15:30,5."""
     hours, minutes, seconds = (float(part) for part in text.replace(",", ".").split(":"))
     return 3600.0 * hours + 60.0 * minutes + seconds
 
 
-def _second(unit: str, file: Path) -> float:
-    """What one of a unit is in seconds. InputError for none of time."""
+def _seconds_of_unit(unit: str, file: Path) -> float:
+    """Seconds in one unit of time. InputError for a unit of anything else."""
     known = known_unit(unit or "s")
     if known is None or known.base != "s":
         raise InputError(f"'{file}': its samples are along '{unit}', which is no unit of time")
@@ -156,13 +156,13 @@ def lvm_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
     count = int(segment["Channels"])
     table = np.asarray(segment["data"], dtype=np.float64)
     if found.get("X_Columns", "One") == "No":
-        late = [_clock_s(text) for text in segment.get("Time", []) if text] or [0.0] * count
+        late = [_seconds_of_day(text) for text in segment.get("Time", []) if text] or [0.0] * count
         steps = zip(segment["X0"], segment["Delta_X"], late, strict=False)
         times = [x0 + by - late[0] + step * np.arange(len(table)) for x0, step, by in steps]
         values, names = table, list(segment["Channel names"])
     else:
         times, values, names = [table[:, 0]] * count, table[:, 1:], list(segment["Channel names"])[1:]
-    scales = {_second(text.strip(), file) for text in segment.get("X_Unit_Label", []) if text.strip()} or {1.0}
+    scales = {_seconds_of_unit(text.strip(), file) for text in segment.get("X_Unit_Label", []) if text.strip()} or {1.0}
     if len(scales) > 1:
         raise InputError(f"'{file}': its times are in several units; save its channels apart")
     times = [scales.copy().pop() * time for time in times]

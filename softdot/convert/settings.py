@@ -38,7 +38,7 @@ class Settings:
 
     @property
     def time_units(self) -> list[str]:
-        """Of the time."""
+        """The units of time that the settings state."""
         return [text for key, text in self._stated_units() if _is_of_time(key, text)]
 
     def unit_of_channel(self, number: int, names: Sequence[str], where: str) -> str:

@@ -118,7 +118,7 @@ def known_unit(text: str, name: str = "") -> Unit | None:
 def split_name(cell: str, where: str) -> tuple[str, Unit | None]:
     """Name and unit of a cell of the header: CH1(mV) -> CH1 and mV; the unit is None without one. InputError."""
     text = cell.strip()
-    name, unit = _split(text, where)
+    name, unit = _name_and_unit(text, where)
     if FACTOR.search(name):
         raise InputError(
             f"{where}: column '{text[:40]}' has a factor or a quotient in its name; scale its values, and leave it out"
@@ -126,8 +126,8 @@ def split_name(cell: str, where: str) -> tuple[str, Unit | None]:
     return name, unit
 
 
-def _split(text: str, where: str) -> tuple[str, Unit | None]:
-    """Name and unit."""
+def _name_and_unit(text: str, where: str) -> tuple[str, Unit | None]:
+    """Name and unit of a cell of the header, None for a missing unit."""
     bracket = re.fullmatch(r"(.*?)\s*[(\[{]\s*([^()\[\]{}]*?)\s*[)\]}]\s*(.*)", text)
     if bracket:
         name = " ".join(f"{bracket[1]} {bracket[3]}".split())
