@@ -84,7 +84,7 @@ def run_diagnosis(
     check_cache_folder()
     rig = load_rig(folder)
     _refuse_what_sampling_misses(rig)
-    rig = replace(rig, recording=thinned(rig.recording))
+    rig = replace(rig, recording=thin_recording(rig.recording))
     held_out_runs(rig.recording, options.hold_out)
     noise_models(rig.recording)  # refuses a channel without known noise before any press
     with executor_for(scheduler) as executor, staged_folder(out, DIAGNOSIS) as staged:

@@ -14,7 +14,7 @@ from diagnose.forward import Engine, Setting
 from diagnose.next_press.press_shape import Shape
 from diagnose.next_press.proposals import base_setup
 from diagnose.verdict.names import model_words
-from diagnose.verdict.resimulation import switched_on
+from diagnose.verdict.resimulation import setting_mechanism
 from softdot.config.rig import RIG_FILE, RIG_KEYS, Rig
 
 IMPROVED_HEADING = "Your {} with what the recordings say was left out: {}."
@@ -48,7 +48,7 @@ def _segment(rig: Rig, findings: Findings) -> tuple[tomlkit.TOMLDocument, str]:
         document["press"] = _press(deepest.run.drive, deepest.shape)
     if findings.best is None:
         return document, UNCHANGED_HEADING.format(RIG_FILE)
-    _append(document, [switched_on(setting).model_dump(mode="json") for setting in findings.best.settings])
+    _append(document, [setting_mechanism(setting).model_dump(mode="json") for setting in findings.best.settings])
     return document, IMPROVED_HEADING.format(RIG_FILE, model_words(findings.best))
 
 

@@ -142,7 +142,9 @@ def _pictures(
         yield Picture("gains", gains, "Which explanation predicts best", text)
 
 
-def runs_to_draw(recording: Recording, findings: Findings, resimulated: Sequence[Resimulated]) -> list[tuple[str, Any]]:
+def runs_to_draw(
+    recording: Recording, findings: Findings, resimulated: Sequence[Resimulation]
+) -> list[tuple[str, Any]]:
     """Label and signals of the full model for the runs pressed again; then labels of those with the largest excess."""
     pressed = {one.run: one.signals for one in resimulated}
     excess = {run.label: 0.0 for run in recording.runs}
