@@ -290,8 +290,8 @@ def test_what_is_not_understood_is_refused_by_name(text, said, tmp_path):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("by", ["x10", "x1e-3", "*10", "/1000", "× 0.1", "per mm", "/ s", "²", "1e-3", "10:1"])
-@pytest.mark.parametrize("name", ["Force (N) {}", "Force {} (N)", "Time [ms] {}"])
+@for_each("by", ["x10", "x1e-3", "*10", "/1000", "× 0.1", "per mm", "/ s", "²", "1e-3", "10:1"])
+@for_each("name", ["Force (N) {}", "Force {} (N)", "Time [ms] {}"])
 def test_a_factor_beside_a_unit_is_refused(name, by, tmp_path):
     if by in ("/ s", "per mm") and name.endswith("(N)"):
         return  # Force/s (N) is a name
@@ -301,17 +301,15 @@ def test_a_factor_beside_a_unit_is_refused(name, by, tmp_path):
         read_log(tmp_path / "log.csv")
 
 
-@pytest.mark.parametrize(
-    "head", ["Stiffness N/mm", "Field V/mm", "Sensitivity_mV/N", "Speed mm/min", "N/mm", "Rate V/s"]
-)
+@for_each("head", ["Stiffness N/mm", "Field V/mm", "Sensitivity_mV/N", "Speed mm/min", "N/mm", "Rate V/s"])
 def test_a_quotient_of_units_is_not_the_unit_behind_its_slash(head, tmp_path):
     (tmp_path / "log.csv").write_text(f"Time (s),{head}\n0,1\n1,2\n", "utf-8")
     with pytest.raises(InputError, match=f"column '{head}' has (no unit|a factor or a quotient)"):
         read_log(tmp_path / "log.csv")
 
 
-@pytest.mark.parametrize("unit", ["ticks", "samples", "days", "ps", "0.1ms", "counts", "HH:MM:SS", "centiseconds"])
-@pytest.mark.parametrize("mark", ["_", " ", "/"])
+@for_each("unit", ["ticks", "samples", "days", "ps", "0.1ms", "counts", "HH:MM:SS", "centiseconds"])
+@for_each("mark", ["_", " ", "/"])
 def test_a_time_in_what_is_not_known_is_not_in_seconds(mark, unit, tmp_path):
     (tmp_path / "log.csv").write_text(f"Time{mark}{unit},CH1 (V)\n0,1\n1,2\n", "utf-8")
     with pytest.raises(InputError, match=r"what is behind its name is not a known unit|has a factor"):

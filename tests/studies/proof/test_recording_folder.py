@@ -24,7 +24,8 @@ def test_a_recording_is_read_as_it_was_meant(name, tmp_path):
         (tmp_path / file).write_text(text, "utf-8")
     rig = load_rig(tmp_path)
     assert [len(one.presses) for one in rig.recording.phases] == [run.count for run in bench.runs]
-    assert not rig.recording.warnings
+    repeats = "has the samples of"  # without noise two presses of one programme are the same to the last digit
+    assert not [told for told in rig.recording.warnings if repeats not in told]
     assert rig.config.segment.length_mm == bench.made.length_mm
     assert rig.recording.runs[0].answers == channels(bench)
     assert rig.config.segment.boundary == ("free" if name.endswith("-free") else "clamped")
