@@ -46,7 +46,7 @@ def choose_apart(gains: Floats, places: Floats, known: Floats, count: int, apart
 
     places : (n, f) of the candidates, known : (k, f).
 
-    >>> largest_apart(np.array([1.0, 3.0, 2.9]), np.array([[0.0], [1.0], [1.1]]), np.array([[5.0]]), 2, 0.5)
+    >>> choose_apart(np.array([1.0, 3.0, 2.9]), np.array([[0.0], [1.0], [1.1]]), np.array([[5.0]]), 2, 0.5)
     [1, 0]
     """
     chosen: list[int] = []

@@ -1,5 +1,4 @@
 """The press of one configuration, prepared: the solver's model, the dot, the parts, the mesh, and the press itself.
-
 Heavy libraries are imported inside the methods, so that a refused configuration is refused at once.
 """
 
