@@ -249,7 +249,7 @@ class Run:
 
     @cached_property
     def velocity_mm_per_s(self) -> Floats:
-        """Of the drive, (t,), where it is a displacement."""
+        """Velocity (t,) of the drive in mm/s, where it is a displacement."""
         return velocity_mm_per_s(self.time_s, self.drive_values) if self.moving is None else self.moving
 
     @cached_property
