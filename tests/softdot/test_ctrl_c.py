@@ -20,7 +20,7 @@ def slow(case, folder, progress, *others):
     (folder / "half").write_text("half")
     Path("begun").touch()
     time.sleep(60)
-run_folder._fill = slow
+run_folder._fill_folder = slow
 from softdot.cli import main
 sys.exit(main(["run", "-o", "out"]))
 """
