@@ -51,11 +51,16 @@ def _program_files(program: Path) -> tuple[dict[str, Path], dict[Path, list[Path
 
 
 def _package_names(program: Path) -> list[str]:
-    """Return the top packages of this distribution, or all that a bare copy of the sources has."""
+    """Return the top packages of this program: those of its distribution where others lie beside them, else all there
+    are, since the distribution of a working copy does not know a package that is newer than its installation.
+    """
+    alone = [typed.parent.name for typed in program.glob("*/py.typed")]
+    if (program / "pyproject.toml").is_file():
+        return alone
     try:
         return (distribution("softdot").read_text("top_level.txt") or "").split()
     except PackageNotFoundError:
-        return [typed.parent.name for typed in program.glob("*/py.typed")]
+        return alone
 
 
 @cache

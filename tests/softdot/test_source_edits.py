@@ -85,3 +85,13 @@ def test_no_import_of_this_program_is_overlooked():
         nodes = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.ImportFrom) and node.module]
         meant = {node.module for node in nodes} | {f"{node.module}.{one.name}" for node in nodes for one in node.names}
         assert meant <= hashes.imported_names(source), path
+
+
+def test_a_package_that_is_newer_than_the_installation_counts(tmp_path):
+    """Of a working copy; where other distributions lie beside it, only its own packages count."""
+    for name in ("foundation", "numpy"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "py.typed").touch()
+    assert "numpy" not in hashes._package_names(tmp_path)
+    (tmp_path / "pyproject.toml").touch()
+    assert set(hashes._package_names(tmp_path)) == {"foundation", "numpy"}
