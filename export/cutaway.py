@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from PIL import Image
 
 from export.dot_surface import placed_dot, triangle_surface
 from export.skin import (
@@ -128,9 +129,9 @@ def _draw_scene(scene: CutawayScene, bodies: list[DrawnBody], title: str) -> tup
     flat = np.vstack([scene.view.flat(np.asarray(b.surface.points)) for b in bodies if b.surface.n_points])
     box = picture_box(flat)
     figure, axes, pixels_per_mm = picture_page(box, title)
-    image = render(bodies, scene.view, box, 2 * pixels_per_mm, smooth_edges=False)
+    image = Image.fromarray(render(bodies, scene.view, box, 2 * pixels_per_mm, smooth_edges=False)).reduce(2)
     limits = axes.get_xlim(), axes.get_ylim()
-    axes.imshow(image, extent=box, interpolation="antialiased", aspect="auto")
+    axes.imshow(image, extent=box, interpolation="nearest", aspect="auto")  # a pixel for a pixel
     axes.set_xlim(limits[0])
     axes.set_ylim(limits[1])
     _draw_rulers(axes, scene)

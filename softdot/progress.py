@@ -57,6 +57,26 @@ class Untold(Logged):
         """Ignore the step."""
 
 
+class LaterSteps:
+    """Steps of a stage that runs beside others: the last one is kept, and all are reported once its turn comes."""
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress, self._shown = progress, False
+        self._last: tuple[int, int, str] | None = None
+
+    def __call__(self, number: int, count: int, text: str) -> None:
+        """Report a step, or keep it."""
+        self._last = (number, count, text)
+        if self._shown:
+            self._progress.step(number, count, text)
+
+    def show(self) -> None:
+        """Report the last step so far, and each that follows."""
+        self._shown = True
+        if self._last is not None:
+            self._progress.step(*self._last)
+
+
 @contextmanager
 def progress_of(chosen: Namespace) -> Iterator[Progress]:
     """Bars where standard error is a terminal and --quiet was not given, else records of the log alone."""

@@ -1,5 +1,7 @@
 """The folder of a kit: checked, built and written at once or not at all; then its tolerance budget."""
 
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -28,7 +30,7 @@ from softdot.kit.summary import heading, press_words, summary_of
 from softdot.log import LOG_FILE, log_file, warn
 from softdot.output import Product, staged_folder
 from softdot.prepared_press import PreparedPress
-from softdot.progress import Logged, Progress
+from softdot.progress import LaterSteps, Logged, Progress
 from softdot.system_libraries import name_missing_library
 from softdot.tolerances.budget import tolerance_budget
 from softdot.tolerances.budget_outcome import UNFINISHED, BudgetOutcome, failed_budget
@@ -50,13 +52,17 @@ def make_kit(
 
     InputError with one sentence, before anything is written, for what cannot be made. The kit appears without its
     tolerance budget; kit.json and kit.html are replaced when that is known. Where it fails nothing is raised: the kit
-    stays without it, and failure says why. Where it is interrupted the kit stays too. The budget's presses are done by
-    processes of this computer, or on the Dask cluster of a scheduler (tcp://HOST:PORT).
+    stays without it, and failure says why. Where it is interrupted the kit stays too. The budget's presses are done,
+    while parts and pictures are made, by processes of this computer, or on the Dask cluster of a scheduler
+    (tcp://HOST:PORT).
     """
     progress = progress or Logged()
-    with name_missing_library(), executor_for(scheduler) as executor:
+    # the executor ends first: what is asked in the background then ends too
+    with name_missing_library(), ThreadPoolExecutor(1) as background, executor_for(scheduler) as executor:
         warnings = _kit_warnings(config)
         ensure_rendering()
+        steps = LaterSteps(progress)
+        budget = background.submit(_budget_outcome, config, steps, executor)  # other processes press beside this one
         with staged_folder(out, KIT) as folder:
             contents = contents_of(config, warnings)
             warn(list(contents.warnings))
@@ -65,7 +71,8 @@ def make_kit(
             first = _write_sheet(config, contents, UNFINISHED, folder)
         with log_file(out / LOG_FILE):
             progress.stage("tolerances")
-            outcome = _budget_outcome(config, progress, executor)
+            steps.show()
+            outcome = budget.result()
         if json_text(first) != _kit_json(out):
             raise InputError(f"output '{out}': another kit was written there meanwhile; this one's budget has no place")
         return _write_sheet(config, contents, outcome, out)
@@ -148,10 +155,10 @@ def _budget_subject(config: Config) -> str:
     return f"one segment of the array alone, {sides}"
 
 
-def _budget_outcome(config: Config, progress: Progress, executor: Executor) -> BudgetOutcome:
+def _budget_outcome(config: Config, on_step: Callable[[int, int, str], None], executor: Executor) -> BudgetOutcome:
     """The tolerance budget, or the reason why there is none. AwayError."""
     try:
-        budget = tolerance_budget(budget_config(config), progress.step, executor)
+        budget = tolerance_budget(budget_config(config), on_step, executor)
         return BudgetOutcome("complete", budget=plain(budget.as_dict()))
     except AwayError:
         raise

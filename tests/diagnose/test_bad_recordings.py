@@ -33,6 +33,9 @@ RIGS = {
     GOOD + "[runs.nuisance]\ngain = 5": (
         "runs[0].nuisance: gain = 5 is relative, and must be at most 1; 0.05 is five percent"
     ),
+    GOOD + "[runs.nuisance]\nmodulus.specimen = 11": (
+        "runs[0].nuisance: modulus.specimen = 11 is relative, and must be at most 10; 0.05 is five percent"
+    ),
     GOOD + "[runs.noise]\nvoltage_V = 2.0": (
         "noise.voltage_V = 2 of the run 'press' is more than its whole range, 0.306; is it in another unit?"
     ),

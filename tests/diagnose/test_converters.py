@@ -11,6 +11,7 @@ from scipy.io import savemat
 from diagnose.noise.autoregression import fit_autoregression
 from diagnose.noise.estimate import noise_models
 from diagnose.noise.model import NoiseModel
+from diagnose.signals.recording import LARGEST_RELATIVE
 from foundation.errors import InputError
 from softdot.config.rig import load_rig
 from softdot.convert import read_mat, read_sheet, white_noise, write_recording
@@ -18,6 +19,12 @@ from tests.diagnose.rigs import HEAD, RUN, SEGMENT, samples
 
 RECORDINGS = os.environ.get("SOFTDOT_RECORDINGS", "")
 EXAMPLES = Path(__file__).parents[2] / "examples" / "recordings"
+
+
+def test_what_the_examples_state_of_a_modulus_is_accepted():
+    for script in EXAMPLES.glob("*.py"):
+        stated = runpy.run_path(str(script), run_name="read").get("MODULUS")
+        assert stated is None or stated <= LARGEST_RELATIVE["modulus.specimen"], script.name
 
 
 def test_matlab(tmp_path):

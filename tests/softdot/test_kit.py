@@ -2,6 +2,7 @@
 
 import json
 import re
+import time
 import zipfile
 from pathlib import Path
 
@@ -226,12 +227,22 @@ def test_a_budget_that_fails_leaves_a_kit_without_it(tmp_path, monkeypatch, caps
     assert str(error) not in page
 
 
+def wait_for(path):
+    """A budget that takes longer than the files, beside which it is pressed."""
+    for _ in range(6000):
+        if path.exists():
+            return
+        time.sleep(0.01)
+    raise AssertionError(f"{path} never came")
+
+
 @pytest.mark.press
 def test_the_kit_is_there_before_its_budget(tmp_path, monkeypatch):
     """Complete, and the page says that the budget is still to come."""
     seen = {}
 
     def look(*_):
+        wait_for(tmp_path / "out" / "kit.json")
         seen["entries"] = {entry.name for entry in (tmp_path / "out").iterdir()}
         seen["summary"] = json.loads((tmp_path / "out" / "kit.json").read_text("utf-8"))
         seen["page"] = (tmp_path / "out" / "kit.html").read_text("utf-8")
@@ -255,6 +266,7 @@ def test_a_budget_does_not_go_into_another_kit(tmp_path, monkeypatch, capsys):
     """A second command that wrote its own kit into the folder meanwhile keeps it."""
 
     def overtaken(*_):
+        wait_for(tmp_path / "out" / "kit.json")
         (tmp_path / "out" / "kit.json").write_text("{}", "utf-8")
         return MADE_UP
 
