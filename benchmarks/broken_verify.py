@@ -85,7 +85,7 @@ def never_touching() -> Iterator[None]:
     def nowhere(_patch: Any, _trial: Any, gap: Any) -> Any:
         return np.zeros(len(gap), bool)
 
-    with patch.object(UnilateralInterface, "_closed", nowhere):
+    with patch.object(UnilateralInterface, "_closed_nodes", nowhere):
         yield
 
 
@@ -113,14 +113,14 @@ def larger_input() -> Iterator[None]:
 def shifted_corner() -> Iterator[None]:
     """The corner of a filter a tenth too high."""
     whole = filters.Filter.transfer
-    filters._discrete.cache_clear()
+    filters._discretise.cache_clear()
 
     def transfer(self: filters.Filter) -> Any:
         return whole(replace(self, corner_Hz=TOO_MUCH * self.corner_Hz))
 
     with patch.object(filters.Filter, "transfer", transfer):
         yield
-    filters._discrete.cache_clear()
+    filters._discretise.cache_clear()
 
 
 @contextmanager

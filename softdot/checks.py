@@ -44,7 +44,7 @@ from solve.result import PressResult
 from solve.solution.schedule import duration_s, largest_fraction
 from solve.symmetry import meshed_planes
 from solve.terms.rigid_dot import RigidDot
-from solve.validity import doubts
+from solve.validity import validity_warnings
 from solve.waveform import Waveform
 
 MOST_ELEMENTS = 1_000_000
@@ -167,7 +167,11 @@ NEARLY_INCOMPRESSIBLE_POISSON_RATIO = 0.49
 def result_warnings(model: Model, dot_shape: DotShape, result: PressResult) -> list[str]:
     """Warnings from a solution: of the solver, of yield where it is not modelled, of strain beyond the data."""
     yields = bool(laws_of(model.physics.inelastic, Yield))
-    warnings = [*result.warnings, *([] if yields else _yield_warnings(model, result)), *doubts(model, result)]
+    warnings = [
+        *result.warnings,
+        *([] if yields else _yield_warnings(model, result)),
+        *validity_warnings(model, result),
+    ]
     for layer, material in model.materials.items():
         warnings += _fit_range_warnings(layer, material, result)
     if model.press.indentation_mm is None:

@@ -83,7 +83,7 @@ def _fill_folder(
     from softdot.config.loading import unused_material_warnings
     from softdot.summary import heading, mesh_part, press_part, stopped_solver
     from softdot.tolerances.uncertainty import fill_cache, uncertainty
-    from solve.fem.warm_up import compile_cheap
+    from solve.fem.warm_up import compile_other_kernels
 
     clock, config, model = StageClock(), case.config, case.model
     summary = {**heading(config), "warnings": [*case.warnings, *unused_material_warnings(config)]}
@@ -106,7 +106,7 @@ def _fill_folder(
     progress.stage("solve")
     with clock("solve"):
         if not ask.kernels.done():
-            compile_cheap()
+            compile_other_kernels()
             wait((ask.kernels,))
         pressed = case.press(_report_steps_to(progress))
         result, along = pressed.result, pressed.course
@@ -133,11 +133,11 @@ def _log_preliminaries(config: Config) -> None:
     """Log, before the work begins, which keys were not stated and that kernels have yet to be compiled."""
     from softdot.checks import COMPILE_S
     from softdot.config.default_design import default_design_line
-    from solve.fem.warm_up import compiled
+    from solve.fem.warm_up import is_compiled
 
     if config.from_default:
         LOG.info("%s", default_design_line(config.from_default, config.model_dump(mode="json")))
-    if not compiled():
+    if not is_compiled():
         LOG.info("compiling kernels beside the mesh, once on this machine: about %.0f s", COMPILE_S)
 
 

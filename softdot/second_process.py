@@ -36,12 +36,12 @@ class SecondProcess(WorkerProcess):
 
 def compile_kernels() -> None:
     """Compile the slow kernels unless they are cached; the first process compiles the others while it waits."""
-    from solve.fem.warm_up import compiled
+    from solve.fem.warm_up import is_compiled
 
-    if not compiled():
-        from solve.fem.warm_up import compile_dear
+    if not is_compiled():
+        from solve.fem.warm_up import compile_element_kernels
 
-        compile_dear()
+        compile_element_kernels()
 
 
 def load_libraries() -> None:

@@ -16,7 +16,7 @@ PIECE: Any = {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper
 DIVISION: Any = "numpy"
 """By zero gives infinity, which Newton's iteration sees: an element that is all but flat has no inverse."""
 THREADS: int = nb.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
-LEAST = 128  # elements or points that are worth waking a thread
+LEAST_A_THREAD = 128  # elements or points that are worth waking a thread
 
 
 def piece(math: Any = False) -> Callable[[Callable[..., Any]], Any]:
@@ -38,17 +38,17 @@ def in_threads(math: Any = False) -> Callable[[Callable[..., Any]], Any]:
         kernel = nb.njit(cache=True, nogil=True, fastmath=math, error_model=DIVISION)(function)
 
         @wraps(function)
-        def run(*arguments: Any) -> None:
+        def execute(*arguments: Any) -> None:
             count = len(arguments[0])
-            parts = max(1, min(THREADS, count // LEAST))
+            parts = max(1, min(THREADS, count // LEAST_A_THREAD))
             cuts = [count * part // parts for part in range(parts + 1)]
             others = [_pool().submit(kernel, *cuts[part : part + 2], *arguments) for part in range(1, parts)]
             kernel(0, cuts[1], *arguments)
             for other in others:
                 other.result()
 
-        run.kernel = kernel  # type: ignore[attr-defined]
-        return run
+        execute.kernel = kernel  # type: ignore[attr-defined]
+        return execute
 
     return decorate
 

@@ -10,14 +10,15 @@ from solve.solution.march import SMALLEST_IN_TIME, TIME_TOLERANCE
 PENETRATION_LIMIT = 0.05  # of the depth; contact holds in weighted means, so a coarse surface can overlap at points
 
 
-def doubtful_results(steps: Sequence[Step], records: Sequence[Record]) -> tuple[str, ...]:
-    """Warnings, one sentence each."""
+def convergence_warnings(steps: Sequence[Step], records: Sequence[Record]) -> tuple[str, ...]:
+    """Warnings about a press that converged, one sentence each. steps : the reported ones; records : all states."""
     deepest = max(steps, key=lambda step: step.indentation_m)
-    return (*_untouched(records), *_penetration(deepest), *_snaps(records), *_unresolved(records))
+    of_records = *_snap_warning(records), *_time_warning(records)
+    return *_contact_warning(records), *_penetration_warning(deepest), *of_records
 
 
-def _untouched(records: Sequence[Record]) -> tuple[str, ...]:
-    """A warning where the dot never reached the segment."""
+def _contact_warning(records: Sequence[Record]) -> tuple[str, ...]:
+    """One warning where the dot never reached the segment, else none."""
     if len(records) < 2 or any(record.contact_area_m2 > 0.0 for record in records):
         return ()
     return (
@@ -26,8 +27,8 @@ def _untouched(records: Sequence[Record]) -> tuple[str, ...]:
     )
 
 
-def _penetration(step: Step) -> tuple[str, ...]:
-    """A warning where the dot overlaps the surface by more than a share of the depth."""
+def _penetration_warning(step: Step) -> tuple[str, ...]:
+    """One warning where the dot overlaps the surface by more than PENETRATION_LIMIT of the depth, else none."""
     overlap = -float(step.fields.gap_m.min())
     if overlap <= PENETRATION_LIMIT * max(step.indentation_m, 0.0) or overlap <= 1e-9:
         return ()
@@ -37,8 +38,8 @@ def _penetration(step: Step) -> tuple[str, ...]:
     )
 
 
-def _snaps(records: Sequence[Record]) -> tuple[str, ...]:
-    """A warning where the segment lost one equilibrium and found another."""
+def _snap_warning(records: Sequence[Record]) -> tuple[str, ...]:
+    """One warning where the segment lost one equilibrium and found another, else none."""
     depths_mm = [f"{1e3 * record.indentation_m:.3f}" for record in records if record.snapped]
     if not depths_mm:
         return ()
@@ -49,8 +50,8 @@ def _snaps(records: Sequence[Record]) -> tuple[str, ...]:
     )
 
 
-def _unresolved(records: Sequence[Record]) -> tuple[str, ...]:
-    """A warning where an error of the time integration is above its tolerance, too, beside the largest path.
+def _time_warning(records: Sequence[Record]) -> tuple[str, ...]:
+    """One warning where the time integration errs by more than TIME_TOLERANCE of the largest path, else none.
 
     Each error is relative to the state it occurred in: where the dot had hardly moved it means little.
     """

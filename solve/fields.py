@@ -23,7 +23,7 @@ def fields(system: System, tet_mesh: TetMesh, whole: MirroredMesh, state: State,
     tet_mesh : what is solved, whole : its images; before : the state that its step started from.
     """
     trial, units = system.trial(state.x, state.load, state.time, before), system.units
-    cauchy, right_cauchy_green, strain, stress = map(whole.tensors, _means(system, tet_mesh, trial, before))
+    cauchy, right_cauchy_green, strain, stress = map(whole.tensors, _element_means(system, tet_mesh, trial, before))
     film, columns, law = whole.tet_mesh.region_tets("film"), film_columns(whole.tet_mesh), system.film.law
     film_strain = columns.mean(to_voigt(strain[film], 2.0))
     film_stress = columns.mean(to_voigt(stress[film]))
@@ -42,7 +42,7 @@ def fields(system: System, tet_mesh: TetMesh, whole: MirroredMesh, state: State,
         film_stress_Pa=_in_film_axes(law.to_film_axes, film_stress) * units.stress,
         charge_density_C_per_m2=film_stress @ law.coupling * (units.stress * units.length / units.voltage),
         contact_nodes=contact_nodes,
-        gap_m=_gap(system, trial, touched),
+        gap_m=_gaps_m(system, trial, touched),
         contact_pressure_Pa=trial.x[system.unknowns.contact[touched]] * units.stress,
         contact_traction_Pa=_traction(system, tet_mesh, trial)[touched] * whole.node_sign[contact_nodes] * units.stress,
     )
@@ -58,18 +58,18 @@ def _traction(system: System, tet_mesh: TetMesh, trial: Trial) -> Floats:
     return traction
 
 
-def _means(system: System, tet_mesh: TetMesh, trial: Trial, before: State) -> Floats:
+def _element_means(system: System, tet_mesh: TetMesh, trial: Trial, before: State) -> Floats:
     """Means over each element in segment axes, (4, m, 3, 3): Cauchy stress, right Cauchy-Green tensor, and of the film
     its strain and second Piola-Kirchhoff stress, 0 elsewhere.
     """
     means = np.zeros((4, len(tet_mesh.tets), 3, 3))
     for solid in system.solids:
-        means[:2, tet_mesh.region_tets(solid.name)] = _medium(solid, trial, system.history_of(solid, before))
-    means[:, tet_mesh.region_tets("film")] = _film(system.film, trial, system.history_of(system.film, before))
+        means[:2, tet_mesh.region_tets(solid.name)] = _medium_means(solid, trial, system.history_of(solid, before))
+    means[:, tet_mesh.region_tets("film")] = _film_means(system.film, trial, system.history_of(system.film, before))
     return means
 
 
-def _medium(solid: SolidRegion, trial: Trial, history: History) -> tuple[Floats, Floats]:
+def _medium_means(solid: SolidRegion, trial: Trial, history: History) -> tuple[Floats, Floats]:
     """Mean Cauchy stress and mean right Cauchy-Green tensor, (m, 3, 3) each, J sigma = F S F^t."""
     f = deformation_gradient(solid.gradient, trial.displacement[solid.tets])
     c = f.swapaxes(-1, -2) @ f
@@ -79,24 +79,26 @@ def _medium(solid: SolidRegion, trial: Trial, history: History) -> tuple[Floats,
     if not solid.law.compressible:
         pressure = np.einsum("qa,ma->mq", linear(tetrahedron()[0]), trial.x[solid.dofs[:, 30:]])
         sigma += pressure[..., None, None] * np.eye(3)
-    return _mean(sigma, solid.weight), _mean(c, solid.weight)
+    return _volume_mean(sigma, solid.weight), _volume_mean(c, solid.weight)
 
 
-def _film(film: FilmRegion, trial: Trial, history: History) -> tuple[Floats, ...]:
+def _film_means(film: FilmRegion, trial: Trial, history: History) -> tuple[Floats, ...]:
     """Means (k, 3, 3) of Cauchy stress, right Cauchy-Green tensor, strain and stress in segment axes."""
     strain, stress = film.strain_and_stress(trial, history)
     f = deformation_gradient(film.gradient, trial.displacement[film.tets])
     sigma = f @ from_voigt(stress) @ f.swapaxes(-1, -2) / np.linalg.det(f)[..., None, None]
     tensors = sigma, f.swapaxes(-1, -2) @ f, from_voigt(strain, 2.0), from_voigt(stress)
-    return tuple(_mean(each, film.weight) for each in tensors)
+    return tuple(_volume_mean(each, film.weight) for each in tensors)
 
 
-def _mean(values: Floats, weight: Floats) -> Floats:
+def _volume_mean(values: Floats, weight: Floats) -> Floats:
+    """Mean (m, ...) over each element of values (m, q, ...) at quadrature points with weights (m, q)."""
     mean: Floats = np.einsum("mq...,mq->m...", values, weight / weight.sum(axis=1, keepdims=True))
     return mean
 
 
 def _largest_stretch(cauchy_green: Floats) -> Floats:
+    """Largest principal stretch (m,) of right Cauchy-Green tensors (m, 3, 3)."""
     stretch: Floats = np.sqrt(np.linalg.eigvalsh(cauchy_green)[:, -1])
     return stretch
 
@@ -106,6 +108,7 @@ def _in_film_axes(turn: Floats, stress: Floats) -> Floats:
     return np.asarray(np.linalg.solve(turn.T, stress.T).T, dtype=np.float64)
 
 
-def _gap(system: System, trial: Trial, nodes: Ints) -> Floats:
+def _gaps_m(system: System, trial: Trial, nodes: Ints) -> Floats:
+    """Signed distance (c,) in m of nodes (c,) to the dot, negative where they overlap."""
     gap = system.contact.dot.distance((system.points + trial.displacement)[nodes], trial.move)[0]
     return gap * system.units.length

@@ -58,7 +58,7 @@ def film_columns(tet_mesh: TetMesh) -> FilmColumns:
 def film_peak(steps: Sequence[Step], tet_mesh: TetMesh, segment: Segment) -> FilmPeak:
     """The largest film quantities of all steps, away from held rims and anywhere."""
     tets = tet_mesh.region_tets("film")
-    distance_mm = _from_held_rim(tet_mesh.points_mm[tet_mesh.tets[tets, :4]].mean(axis=1), segment)
+    distance_mm = _distance_to_held_rim_mm(tet_mesh.points_mm[tet_mesh.tets[tets, :4]].mean(axis=1), segment)
     wanted_mm = RIM_THICKNESSES * 1e-3 * segment.film.thickness_um
     held = bool(np.isfinite(distance_mm).any())
     wanted_mm = min(wanted_mm, 0.5 * float(distance_mm.max())) if held else 0.0  # a tiny film: at least its middle
@@ -78,8 +78,8 @@ def film_peak(steps: Sequence[Step], tet_mesh: TetMesh, segment: Segment) -> Fil
     )
 
 
-def _from_held_rim(points_mm: Floats, segment: Segment) -> Floats:
-    """Distance (k,) of points (k, 3) from the nearest held side of the film, infinite where none is held."""
+def _distance_to_held_rim_mm(points_mm: Floats, segment: Segment) -> Floats:
+    """Distance (k,) in mm of points (k, 3) from the nearest held side of the film, infinite where none is held."""
     if segment.boundary == "free" or "film" not in segment.held_layers:
         return np.full(len(points_mm), np.inf)
     distance = 0.5 * segment.length_mm - np.abs(points_mm[:, 0])

@@ -81,7 +81,7 @@ class Readout(Table):
     @field_validator("polarity", mode="before")
     @classmethod
     def _number(cls, value: Any) -> Any:
-        """True is equal to 1 in Python."""
+        """Refuse true and false, which Python takes for 1 and 0."""
         if isinstance(value, bool):
             raise ValueError("must be 1 or -1")
         return value
@@ -106,8 +106,8 @@ class Model:
 
     @property
     def amplifier(self) -> Readout | None:
-        """What stands between the film and what is read: the read-out as stated, an ideal one where only mechanisms of
-        the amplifier are, None where nothing is.
+        """The amplifier between the film and what is read: the read-out as stated, an ideal one where there are only
+        mechanisms of the amplifier, None where there are neither.
         """
         if self.readout is None and (self.physics.stages or self.physics.channels):
             return Readout()

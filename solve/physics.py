@@ -60,13 +60,13 @@ class Physics:
 
     @property
     def structure(self) -> "Physics":
-        """What of it is in an elastic press of the dot alone: neither time and path nor rig and read-out."""
+        """The part that acts in an elastic press of the dot alone: neither time and path nor rig and read-out."""
         elastic = tuple(term for term in self.terms if not (term.follows_time or term.of_rig))
         return Physics(bonds=self.bonds, delaminations=self.delaminations, prestretch=self.prestretch, terms=elastic)
 
     @property
     def rig_terms(self) -> tuple[TermDefinition, ...]:
-        """What acts between the rig and the dot."""
+        """Terms between the rig and the dot."""
         return tuple(term for term in self.terms if term.of_rig)
 
     def added_force_N(self, motion: Motion, dot_is_free: bool) -> Floats:
@@ -83,7 +83,7 @@ Part = TypeVar("Part")
 
 
 def like(parts: Iterable[object], default: Part) -> Part:
-    """The first of the parts that is of the same kind as the default, which it is where there is none."""
+    """The first of the parts that has the type of the default, else the default."""
     return next((one for one in parts if type(one) is type(default)), default)
 
 
@@ -104,13 +104,13 @@ def nonlinear_laws(inelastic: LawsAround) -> dict[str, tuple[StatedLaw, ...]]:
 
 
 def linear_laws(inelastic: LawsAround) -> dict[str, tuple[StatedLaw, ...]]:
-    """The others."""
+    """Layer or bond -> those of its laws that are linear in the history of the stress, where it has any."""
     found = {place: tuple(law for law in laws if law.linear) for place, laws in inelastic.items()}
     return {place: laws for place, laws in found.items() if laws}
 
 
 def declared_bonds(segment: Segment) -> dict[str, BondLine]:
-    """The compliant bonds of [[segment.bonds]] by name."""
+    """Bond -> stiffness of the compliant bonds that a segment states in [[segment.bonds]]."""
     return {
         bond_name(*bond.between): BondLine(bond.normal_stiffness_N_per_mm3, bond.shear_stiffness_N_per_mm3)
         for bond in segment.bonds
@@ -118,7 +118,7 @@ def declared_bonds(segment: Segment) -> dict[str, BondLine]:
 
 
 def bond_name(one: str, other: str) -> str:
-    """bond-base, or bond-UPPER-LOWER of two neighbouring layers."""
+    """Name of the bond between two neighbouring layers, bond-UPPER-LOWER; bond-base where one is the base."""
     if "base" in (one, other):
         return "bond-base"
     upper_first = ("effector", "medium1", "film", "medium2")

@@ -11,7 +11,7 @@ from solve.model import Model
 from solve.readout.course import course
 from solve.result import PressResult, Step
 from solve.setup import Setup, discretise
-from solve.solution.advice import explained
+from solve.solution.advice import explain_failure
 from solve.solution.checkpoint import Checkpoint
 from solve.solution.errors import NoEquilibriumError
 from solve.solution.linear import LinearSolver
@@ -37,7 +37,7 @@ def press_segment(
     Want of convergence raises nothing: the result then holds what converged and says where and why it ended.
     InputError for a delaminated patch outside its interface.
     """
-    result = _pressed(model, tet_mesh, on_step, checkpoint, dot or resolve_dot(model.dot, model.segment))
+    result = _solve_press(model, tet_mesh, on_step, checkpoint, dot or resolve_dot(model.dot, model.segment))
     for _ in range(MOST_DOUBLINGS):
         press = model.press.model_copy(update={"load_steps": 2 * model.press.load_steps})
         if accuracy_percent is None or not result.converged or press.load_steps > MOST_STEPS:
@@ -45,16 +45,17 @@ def press_segment(
         if course(result, model.press, model.amplifier, model.physics).readout_error_percent <= accuracy_percent:
             break
         model = replace(model, press=press)
-        result = _pressed(model, tet_mesh, on_step, None, dot or resolve_dot(model.dot, model.segment))
+        result = _solve_press(model, tet_mesh, on_step, None, dot or resolve_dot(model.dot, model.segment))
     return result
 
 
 MOST_DOUBLINGS, MOST_STEPS = 4, 1000
 
 
-def _pressed(
+def _solve_press(
     model: Model, tet_mesh: TetMesh, on_step: OnStep | None, checkpoint: Checkpoint | None, dot: DotShape
 ) -> PressResult:
+    """Solve the press once, with the load steps that the model states."""
     setup = discretise(model, tet_mesh, dot)
     linear = LinearSolver(setup.system.factorisation_shift)
     failure = _follow(setup, linear, on_step, checkpoint)
@@ -65,7 +66,7 @@ def _pressed(
 
 
 def _follow(setup: Setup, linear: LinearSolver, on_step: OnStep | None, checkpoint: Checkpoint | None) -> str | None:
-    """March along the schedule; returns why it stopped short, or None."""
+    """March along the schedule and record it; returns why it stopped short, or None."""
     system, recorder, targets = setup.system, setup.recorder, setup.targets(setup.model.follows_time)
     past = [] if checkpoint is None else checkpoint.load(recorder, system.count)
     if not past:
@@ -74,7 +75,7 @@ def _follow(setup: Setup, linear: LinearSolver, on_step: OnStep | None, checkpoi
         except NoEquilibriumError as error:
             flat = system.at_rest(targets[0].load)
             recorder.start(flat)
-            reason = explained(system, error, flat, targets[0].load)
+            reason = explain_failure(system, error, flat, targets[0].load)
             return f"step 0 of {len(targets) - 1}, the prestretched film at rest, has no equilibrium: {reason}"
         recorder.start(past[0])
     count, done = len(targets) - 1, len(recorder.steps)

@@ -12,19 +12,19 @@ from mesh.types import TetMesh
 from solve.fem.numbering import Numbers, Unknowns, number
 from solve.fem.pattern import build_pattern
 from solve.materials.film import FilmLaw, film_law
-from solve.materials.inelastic import Inelastic, in_order
+from solve.materials.inelastic import Inelastic, sort_laws
 from solve.materials.laws import MediumLaw
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Readout
 from solve.open_interfaces import OpenInterface
 from solve.physics import Physics
 from solve.readout.channel_parts import capacitances_F, conductances_uS
-from solve.symmetry import electrode_rectangles, orbits
+from solve.symmetry import electrode_orbits, electrode_rectangles
 from solve.system import System
 from solve.terms.base import Term
 from solve.terms.bond import bond
 from solve.terms.builder import Builder
-from solve.terms.circuit import Circuit, Tied
+from solve.terms.circuit import Circuit, TiedInputs
 from solve.terms.contact import contact_facets
 from solve.terms.definition import TermDefinition
 from solve.terms.elastic_sides import side_springs
@@ -37,7 +37,7 @@ from solve.units import Units, solver_units
 from solve.whole_segment import meshed_share, whole_charge
 
 
-def refuse_unresolved(segment: Segment, tet_mesh: TetMesh, film: FilmRegion) -> None:
+def refuse_unresolved_electrodes(segment: Segment, tet_mesh: TetMesh, film: FilmRegion) -> None:
     """InputError for an electrode whose voltage acts back on the film and that is over no middle of an element."""
     if (film.voltage_dofs < 0).all():
         return
@@ -69,23 +69,24 @@ def build_system(
     separate_channels : as of a Model.
     """
     physics = physics or Physics()
-    laws = {name: materials[name].law.scaled(1e6) for name in tet_mesh.region_names if name != "film"}
+    laws = {name: materials[name].law.scale_moduli(1e6) for name in tet_mesh.region_names if name != "film"}
     numbers, parallel = Numbers(), readout is not None and not separate_channels
-    unknowns = _number(segment, materials, laws, tet_mesh, physics, readout, parallel, force_driven, numbers)
+    unknowns = _number_unknowns(segment, materials, laws, tet_mesh, physics, readout, parallel, force_driven, numbers)
     units = units or solver_units(segment, laws, materials)
     points = tet_mesh.points_mm * (1e-3 / units.length)
     contact = contact_facets(points, tet_mesh.facets["contact"], unknowns, RigidDot(dot, 1e3 * units.length))
     share = meshed_share(segment, tet_mesh)
     make = Builder(segment, materials, tet_mesh, points, unknowns, numbers, units, contact, share, force_driven)
-    film = _film(make, physics)
-    terms: list[Term] = [*(_solid(make, physics, name, law) for name, law in laws.items()), film, *_sides(make)]
-    terms += [*_bonds(make, physics, opened), *_circuit(make, film, physics, readout, separate_channels)]
-    terms += _dot(make, physics.terms)
+    film = _film_region(make, physics)
+    terms: list[Term] = [_solid_region(make, physics, name, law) for name, law in laws.items()]
+    terms += [film, *_side_springs(make), *_interface_terms(make, physics, opened)]
+    terms += _circuit_terms(make, film, physics, readout, separate_channels)
+    terms += _dot_terms(make, physics.terms)
     pattern = build_pattern([group for term in terms for group in term.groups], numbers.count)
     return System(points, unknowns, numbers.count, units, tuple(terms), contact, pattern)
 
 
-def _number(
+def _number_unknowns(
     segment: Segment,
     materials: Mapping[str, Material],
     laws: Mapping[str, MediumLaw],
@@ -96,6 +97,7 @@ def _number(
     force_driven: bool,
     numbers: Numbers,
 ) -> Unknowns:
+    """Number the unknowns of a press. parallel : one amplifier has all electrodes; numbers : hands the numbers out."""
     film = materials["film"]
     two_way = isinstance(film, PiezoelectricFilm) and film.coupling == "two-way"
     virtual_ground = readout is not None and readout.mode == "charge"
@@ -105,7 +107,7 @@ def _number(
         held_regions=segment.held_layers if segment.boundary == "clamped" else (),
         plane_strain=segment.section == "plane-strain",
         without_pressure=("film", *(name for name, law in laws.items() if law.compressible)),
-        electrodes=orbits(electrode_rectangles(segment), tet_mesh.planes),
+        electrodes=electrode_orbits(electrode_rectangles(segment), tet_mesh.planes),
         two_way=two_way and not virtual_ground,
         parallel=parallel,
         approach=force_driven or any(one.frees_dot for one in physics.terms),
@@ -113,17 +115,19 @@ def _number(
     )
 
 
-def _solid(make: Builder, physics: Physics, name: str, law: MediumLaw) -> SolidRegion:
+def _solid_region(make: Builder, physics: Physics, name: str, law: MediumLaw) -> SolidRegion:
+    """The medium of a region with its laws, in solver units."""
     index = make.tet_mesh.region_tets(name)
     tets = make.tet_mesh.tets[index]
     dofs = make.unknowns.displacement[tets].reshape(-1, 30)
     if not law.compressible:
         dofs = np.concatenate([dofs, make.unknowns.pressure[index]], axis=1)
-    scaled = law.scaled(1.0 / make.units.stress)
+    scaled = law.scale_moduli(1.0 / make.units.stress)
     return solid_region(name, scaled, make.points, tets, dofs, _laws_around(make, physics, name, scaled))
 
 
-def _film(make: Builder, physics: Physics) -> FilmRegion:
+def _film_region(make: Builder, physics: Physics) -> FilmRegion:
+    """The film with its electrodes and laws, in solver units."""
     units, film = make.units, make.film_material
     law = film_law(film, make.segment.film.draw_angle_deg)
     scaled = FilmLaw(
@@ -145,7 +149,8 @@ def _film(make: Builder, physics: Physics) -> FilmRegion:
     )
 
 
-def _sides(make: Builder) -> Iterator[Term]:
+def _side_springs(make: Builder) -> Iterator[Term]:
+    """Springs at the sides of the held layers, where the boundary is elastic."""
     segment, facets = make.segment, make.tet_mesh.facets
     if segment.boundary != "elastic":
         return
@@ -155,7 +160,8 @@ def _sides(make: Builder) -> Iterator[Term]:
             yield side_springs(make.points, facets[f"side-{name}"], make.unknowns.displacement, stiffness)
 
 
-def _bonds(make: Builder, physics: Physics, opened: tuple[OpenInterface, ...]) -> Iterator[Term]:
+def _interface_terms(make: Builder, physics: Physics, opened: tuple[OpenInterface, ...]) -> Iterator[Term]:
+    """Bonds and delaminated patches of the interfaces that open."""
     dofs = make.unknowns.displacement
     for face in opened:
         line, glued = physics.bonds.get(face.name), ~face.delaminated
@@ -170,10 +176,10 @@ def _bonds(make: Builder, physics: Physics, opened: tuple[OpenInterface, ...]) -
             yield unilateral_interface(make.points, lower, upper, dofs, multipliers)
 
 
-def _circuit(
+def _circuit_terms(
     make: Builder, film: FilmRegion, physics: Physics, readout: Readout | None, separate_channels: bool
 ) -> Iterator[Term]:
-    """The inputs of the amplifiers where their voltages act back on the film.
+    """Terms of the amplifiers' inputs, where their voltages act back on the film.
 
     Electrodes of one voltage, in parallel or images of each other, have the inputs of all of them: one in parallel, one
     for each image.
@@ -195,11 +201,11 @@ def _circuit(
         known, of = np.unique(dofs, return_inverse=True)
         joined_by = np.eye(len(known))[of]
         matrix = joined_by.T @ mutual_F @ joined_by
-        yield Tied(known, make.share / farad * matrix)
+        yield TiedInputs(known, make.share / farad * matrix)
 
 
-def _dot(make: Builder, stated: tuple[TermDefinition, ...]) -> Iterator[Term]:
-    """The contact, what a mechanism states, and the force that drives."""
+def _dot_terms(make: Builder, stated: tuple[TermDefinition, ...]) -> Iterator[Term]:
+    """Terms of the contact, of the mechanisms, and of the force that drives."""
     if not any(one.is_contact for one in stated):
         yield make.contact
     for one in stated:
@@ -209,5 +215,5 @@ def _dot(make: Builder, stated: tuple[TermDefinition, ...]) -> Iterator[Term]:
 
 
 def _laws_around(make: Builder, physics: Physics, place: str, elastic: Any) -> tuple[Inelastic, ...]:
-    """The laws with memory around that of a layer, in solver units, or of a bond."""
-    return tuple(law.around(elastic, make.MPa) for law in in_order(physics.inelastic.get(place, ())))
+    """Laws with memory around the elastic one of a layer, in solver units, or around that of a bond."""
+    return tuple(law.around(elastic, make.MPa) for law in sort_laws(physics.inelastic.get(place, ())))

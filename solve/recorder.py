@@ -11,7 +11,7 @@ from geometry.parameters import Segment
 from mesh.symmetry import mirrored_mesh
 from mesh.types import TetMesh
 from solve.added import Motion, added_charge_C
-from solve.convergence_warnings import doubtful_results
+from solve.convergence_warnings import convergence_warnings
 from solve.fields import fields
 from solve.film_means import film_peak
 from solve.materials.parameters import Material, PiezoelectricFilm
@@ -95,7 +95,7 @@ class Recorder:
         resultant = system.dot_force(trial)
         drive = state.load.drive
         sensor = -float(trial.move[2]) if system.unknowns.approach < 0 or self.system.force_driven else drive
-        touched = system.contact.closed(trial)  # the pressure of open nodes is zero but for round-off
+        touched = system.contact.closed_nodes(trial)  # the pressure of open nodes is zero but for round-off
         self.records.append(
             Record(
                 time_s=state.time,
@@ -167,28 +167,28 @@ class Recorder:
             linear_solver=linear_solver,
             max_relative_residual=max(step.relative_residual for step in steps),
             film_peak=film_peak(steps, self.whole.tet_mesh, self.segment),
-            warnings=doubtful_results(steps, self.records),
+            warnings=convergence_warnings(steps, self.records),
         )
 
     @property
     def capacitance_F(self) -> Floats:
-        """Of the undeformed film under each electrode (e,)."""
+        """Capacitance (e,) in F of the undeformed film under each electrode."""
         units = self.system.units
         return self._whole_charge @ self.system.film.capacitance() * (units.charge / units.voltage)
 
     @property
     def electrode_area_m2(self) -> Floats:
-        """Of the undeformed film under each electrode (e,)."""
+        """Undeformed area (e,) in m2 of the film under each electrode."""
         return np.asarray(self._whole_charge @ self.system.film.area() * self.system.units.length**2)
 
     def _mechanical_charge(self, state: State, before: State) -> Floats:
-        """Short-circuit charge of each electrode in C, (e,)."""
+        """Short-circuit charge (e,) in C that the strain of the film puts on each electrode."""
         film, system = self.system.film, self.system
         trial = system.trial(state.x, state.load, state.time, before)
         return self._whole_charge @ film.charge(trial, system.history_of(film, before)) * system.units.charge
 
     def _rig_force(self, state: State, before: State) -> float:
-        """What the rig's force sensor reads, solver units; positive in compression."""
+        """Reading of the rig's force sensor in solver units, positive in compression."""
         trial = self.system.trial(state.x, state.load, state.time, before)
         rig = self.system.rig
         return -float(self.system.dot_force(trial)[2]) if rig is None else rig.drive_force(trial)
@@ -209,6 +209,7 @@ class Recorder:
         )
 
     def _trace(self) -> Trace:
+        """All that was recorded, without what the physics adds."""
         return Trace(
             time_s=np.array([r.time_s for r in self.records]),
             indentation_m=np.array([r.indentation_m for r in self.records]),
@@ -220,7 +221,7 @@ class Recorder:
         )
 
     def _added_charge(self, trace: Trace) -> Floats:
-        """Charge that is not of the strain, (t, e) in C."""
+        """Charge (t, e) in C that is not of the strain."""
         assert isinstance(self.film, PiezoelectricFilm)
         constant = self.film.pyroelectric_uC_per_m2_K
         return added_charge_C(self.physics.added, trace.time_s, trace.contact_area_m2, self.electrode_area_m2, constant)

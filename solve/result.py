@@ -18,7 +18,7 @@ class Fields:
     von_mises_Pa, pressure_Pa (positive in compression), max_stretch : (m,)
     film_tets : (k,) indices of the film's tetrahedra; the film arrays follow it, in the film's own axes (1 along
         the draw direction, 2 across, 3 normal):
-    The film arrays are means through the film's thickness (solve.result), the same for all tetrahedra that
+    The film arrays are means through the film's thickness (solve.film_means), the same for all tetrahedra that
     stand over one another:
     film_strain : (k, 6) Green-Lagrange strain 11, 22, 33, 12, 23, 13
     film_stress_Pa : (k, 6) second Piola-Kirchhoff stress, same order

@@ -10,7 +10,7 @@ from mesh.types import Planes, TetMesh
 from solve.delaminations import with_rims_of_patches
 from solve.model import Model
 from solve.open_interfaces import OpenInterface, open_interfaces
-from solve.problem import build_system, refuse_unresolved
+from solve.problem import build_system, refuse_unresolved_electrodes
 from solve.recorder import Recorder
 from solve.solution.schedule import Target, schedule
 from solve.symmetry import planes_of
@@ -34,14 +34,14 @@ class Setup:
 
     @property
     def full_drive(self) -> float:
-        """Depth or force at the end of the press, solver units."""
+        """Depth or force at the end of the press in solver units, a force as the meshed share of the whole."""
         press, segment = self.model.press, self.model.segment
         if press.force_N is not None:
             return press.force_N * meshed_share(segment, self.tet_mesh) / self.system.units.force
         return 1e-3 * press.depth_mm / self.system.units.length
 
     def targets(self, follows_time: bool) -> list[Target]:
-        """What is to be reached, and when (see solve.solution.schedule)."""
+        """Loads to reach and their times, the first at rest (see solve.solution.schedule)."""
         return schedule(self.model.press, self.full_drive, self.system.units.length, follows_time)
 
 
@@ -67,7 +67,7 @@ def set_up(
     opened: tuple[OpenInterface, ...],
     units: Units | None = None,
 ) -> Setup:
-    """On a mesh whose interfaces are open already; units : of another system, to share them.
+    """Discretise a press on a mesh whose interfaces are open already; units : of another system, to share them.
 
     ValueError for a mesh that ends at a plane which the press does not have.
     """
@@ -78,6 +78,6 @@ def set_up(
         model.segment, model.materials, dot, tet_mesh, driven, model.physics, model.amplifier, opened, units,
         model.separate_channels,
     )  # fmt: skip
-    refuse_unresolved(model.segment, tet_mesh, system.film)
+    refuse_unresolved_electrodes(model.segment, tet_mesh, system.film)
     recorder = Recorder(system, tet_mesh, model.physics, model.segment, model.materials)
     return Setup(model, tet_mesh, (), opened, system, recorder)

@@ -20,45 +20,46 @@ from solve.physics import Delamination
 from solve.readout.channel_parts import capacitances_F, conductances_uS
 from solve.tensors import strain_rotation
 
-SAME_MM, SAME = 1e-9, 1e-9
+SAME_PLACE_MM, SAME_CONSTANT = 1e-9, 1e-9
 """How far an image may be off: in mm; of the largest constant, for angles whose cosine is rounded."""
 
 
 def planes_of(model: Model, dot: DotShape) -> Planes:
     """Axes of the mirror planes that a press of this dot has; a slice varies over x alone."""
     axes = (0,) if model.segment.section == "plane-strain" else (0, 1)
-    return tuple(axis for axis in axes if _is_mirrored(model, dot, axis))
+    return tuple(axis for axis in axes if _press_is_mirrored(model, dot, axis))
 
 
 def meshed_planes(model: Model, dot: DotShape, options: MeshOptions) -> Planes:
-    """Those of them at which the mesh is to end; an own mesh is of the whole."""
+    """Axes of the mirror planes at which the mesh is to end: none for the user's own mesh, which is of the whole."""
     return planes_of(model, dot) if options.symmetry == "auto" and options.file is None else ()
 
 
-def _is_mirrored(model: Model, dot: DotShape, axis: int) -> bool:
+def _press_is_mirrored(model: Model, dot: DotShape, axis: int) -> bool:
+    """Whether everything that the solver is told is its own image in the plane normal to an axis."""
     film = model.materials["film"]
     assert isinstance(film, PiezoelectricFilm)
     return (
-        mirrored_law(film_law(film, model.segment.film.draw_angle_deg), axis)
+        law_is_mirrored(film_law(film, model.segment.film.draw_angle_deg), axis)
         and electrode_images(electrode_rectangles(model.segment), axis) is not None
-        and _mirrored_inputs(model, axis)
-        and _mirrored_patches(model.physics.delaminations, axis, model.segment.section == "plane-strain")
+        and _inputs_are_mirrored(model, axis)
+        and _patches_are_mirrored(model.physics.delaminations, axis, model.segment.section == "plane-strain")
         and all(term.mirrored for term in model.physics.terms)
-        and mirrored_dot(dot, axis)
+        and dot_is_mirrored(dot, axis)
         and all(point[axis] == 0.0 for point in model.press.path_xy_mm)
     )
 
 
-def mirrored_law(law: FilmLaw, axis: int) -> bool:
-    """Whether the constants of a film are those of its image."""
+def law_is_mirrored(law: FilmLaw, axis: int) -> bool:
+    """Whether the constants of a film are those of its image in the plane normal to an axis."""
     sign = np.ones(3)
     sign[axis] = -1.0
     turn = np.diag(strain_rotation(np.diag(sign)))  # of strains; stresses turn by the same signs
     off = law.stiffness - turn[:, None] * law.stiffness * turn
     off_coupling = law.coupling - turn * law.coupling
     return bool(
-        np.abs(off).max() <= SAME * np.abs(law.stiffness).max()
-        and np.abs(off_coupling).max() <= SAME * np.abs(law.coupling).max()
+        np.abs(off).max() <= SAME_CONSTANT * np.abs(law.stiffness).max()
+        and np.abs(off_coupling).max() <= SAME_CONSTANT * np.abs(law.coupling).max()
     )
 
 
@@ -82,11 +83,11 @@ def electrode_images(rectangles: Floats, axis: int) -> Ints | None:
     """The electrode (e,) that is the image of each of the rectangles (e, 4); None where one has none."""
     image = rectangles.copy()
     image[:, [2 * axis, 2 * axis + 1]] = -rectangles[:, [2 * axis + 1, 2 * axis]]
-    same = np.array([[np.allclose(one, other, rtol=0.0, atol=SAME_MM) for other in rectangles] for one in image])
+    same = np.array([[np.allclose(one, other, rtol=0.0, atol=SAME_PLACE_MM) for other in rectangles] for one in image])
     return np.asarray(same.argmax(axis=1)) if same.any(axis=1).all() else None
 
 
-def _mirrored_inputs(model: Model, axis: int) -> bool:
+def _inputs_are_mirrored(model: Model, axis: int) -> bool:
     """Whether amplifiers of electrodes that act back on the film are their own images."""
     image = electrode_images(electrode_rectangles(model.segment), axis)
     if not model.separate_channels or image is None:
@@ -94,10 +95,10 @@ def _mirrored_inputs(model: Model, axis: int) -> bool:
     leaks = conductances_uS(model.physics.channels, len(image))
     between = capacitances_F(model.physics.channels, len(image))
     off = np.abs(leaks[image] - leaks).max(), np.abs(between[image][:, image] - between).max()
-    return bool(off[0] <= SAME * leaks.max() and off[1] <= SAME * np.abs(between).max())
+    return bool(off[0] <= SAME_CONSTANT * leaks.max() and off[1] <= SAME_CONSTANT * np.abs(between).max())
 
 
-def _mirrored_patches(patches: tuple[Delamination, ...], axis: int, is_slice: bool) -> bool:
+def _patches_are_mirrored(patches: tuple[Delamination, ...], axis: int, is_slice: bool) -> bool:
     """Whether the image of each patch is one of them; in a slice they are strips, which y does not tell apart."""
 
     def place(patch: Delamination, sign: float) -> tuple[str, float, float, float, bool]:
@@ -109,24 +110,24 @@ def _mirrored_patches(patches: tuple[Delamination, ...], axis: int, is_slice: bo
     return {place(patch, -1.0) for patch in patches} == {place(patch, 1.0) for patch in patches}
 
 
-def mirrored_dot(dot: DotShape, axis: int) -> bool:
-    """Whether a dot at rest is its own image: its plate is not turned out of the plane, and each ball has its image
-    among the balls.
+def dot_is_mirrored(dot: DotShape, axis: int) -> bool:
+    """Whether a dot at rest is its own image in the plane normal to an axis: its plate is not turned out of the plane,
+    and each ball has its image among the balls.
     """
     sign = np.ones(3)
     sign[axis] = -1.0
     turned = sign[:, None] * dot.rotation * sign
-    if np.abs(turned - dot.rotation).max() > SAME:
+    if np.abs(turned - dot.rotation).max() > SAME_CONSTANT:
         return False
     if dot.kind == "plate" or (dot.kind == "ridge" and axis == 1):
         return True
     tips = dot.origin_mm + dot.tips_mm @ dot.rotation.T
     apart = np.abs((sign * tips)[:, None] - tips[None]).max(axis=2)
-    return bool((apart.min(axis=1) <= SAME_MM).all())
+    return bool((apart.min(axis=1) <= SAME_PLACE_MM).all())
 
 
-def orbits(rectangles: Floats, planes: Planes) -> Ints:
-    """Number of the group (e,), from 0, that each of the electrodes (e, 4) shares with its images."""
+def electrode_orbits(rectangles: Floats, planes: Planes) -> Ints:
+    """Number (e,), from 0, of the group that each of the electrodes (e, 4) shares with its images."""
     first = np.arange(len(rectangles))
     for axis in planes:
         image = electrode_images(rectangles, axis)
@@ -135,8 +136,8 @@ def orbits(rectangles: Floats, planes: Planes) -> Ints:
     return np.unique(first, return_inverse=True)[1].ravel()
 
 
-def images(rectangles: Floats, planes: Planes) -> Floats:
-    """Matrix (e, e): what all electrodes collect, from what each collects of the part that is meshed."""
+def electrode_image_sum(rectangles: Floats, planes: Planes) -> Floats:
+    """Matrix (e, e) from what each electrode (e, 4) collects of the meshed part to what it collects of the whole."""
     total = np.eye(len(rectangles))
     for axis in planes:
         image = electrode_images(rectangles, axis)

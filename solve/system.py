@@ -54,8 +54,8 @@ class State:
     most_work: float = 0.0
 
     @property
-    def damped(self) -> bool:
-        """Whether the step to it was (see Trial)."""
+    def is_damped(self) -> bool:
+        """Whether the step to this state was damped (see solve.terms.base.Trial)."""
         return self.time_error > 0.0
 
 
@@ -84,22 +84,22 @@ class System:
 
     @property
     def solids(self) -> tuple[SolidRegion, ...]:
-        """The media."""
+        """The terms of the media."""
         return tuple(term for term in self.terms if isinstance(term, SolidRegion))
 
     @property
     def film(self) -> FilmRegion:
-        """The film."""
+        """The term of the film."""
         return next(term for term in self.terms if isinstance(term, FilmRegion))
 
     @property
     def symmetric(self) -> bool:
-        """Whether the tangent is."""
+        """Whether the tangent is symmetric."""
         return all(term.symmetric for term in self.terms)
 
     @property
     def rig(self) -> RigTerm | None:
-        """What stands between the rig's sensor and the dot; None where the dot's depth is prescribed."""
+        """The term between the rig's sensor and the dot; None where the dot's depth is prescribed."""
         return next((term for term in self.terms if isinstance(term, RigTerm)), None)
 
     @property
@@ -131,7 +131,7 @@ class System:
         return np.array([*load.lateral, -approach])
 
     def trial(self, x: Floats, load: Load, time: float, previous: State, damped: bool = False) -> Trial:
-        """Everything that the terms see of a trial state after a converged one."""
+        """A trial state x (count,) after a converged one, as the terms see it; time in s."""
         return Trial(
             x=x,
             displacement=self.displacement(x),
@@ -188,10 +188,10 @@ class System:
         """Discrete states of all terms."""
         return np.concatenate([term.status(trial, own) for term, own in zip(self.terms, histories, strict=True)])
 
-    def switched(
+    def with_status(
         self, now: Evaluation, trial: Trial, histories: tuple[History, ...], status: Bools
     ) -> Evaluation | None:
-        """The evaluation of a trial state with other discrete states; None where a term does not know how.
+        """The evaluation of a trial state with other discrete states (d,); None where a term does not know how.
 
         Only the constraints are assembled again, which takes a tenth of the time.
         """

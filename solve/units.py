@@ -18,22 +18,24 @@ class Units:
 
     @property
     def force(self) -> float:
-        """N."""
+        """One unit of force in N."""
         return self.stress * self.length**2
 
     @property
     def charge(self) -> float:
-        """C."""
+        """One unit of charge in C."""
         return self.force * self.length / self.voltage
 
     @property
     def mass(self) -> float:
-        """kg, so that force = mass x length / s^2."""
+        """One unit of mass in kg, so that force = mass x length / s^2."""
         return self.force / self.length
 
 
 def solver_units(segment: Segment, laws: Mapping[str, MediumLaw], materials: Mapping[str, Material]) -> Units:
-    """Of a segment: its length, its stiffest medium, and the larger coupling of its film."""
+    """Units of a problem: the segment's length, its stiffest medium's shear modulus, a voltage that strains its
+    film.
+    """
     length, film = 1e-3 * segment.length_mm, materials["film"]
     constants = (film.d31_pC_per_N, film.d33_pC_per_N) if isinstance(film, PiezoelectricFilm) else (0.0, 0.0)
     coupling = 1e-12 * max(abs(constants[0]), abs(constants[1]), 1e-3)

@@ -31,7 +31,7 @@ CORNERS_AND_MIDDLES = np.array(
     [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.5, 0, 0], [0.5, 0.5, 0], [0, 0.5, 0], [0, 0, 0.5], [0.5, 0, 0.5],
      [0, 0.5, 0.5]]
 )  # fmt: skip
-CRUSHED, SOLID = 0.1, 0.05
+CRUSHED_RUBBER_VOLUME, CRUSHED_FOAM_VOLUME = 0.1, 0.05
 """det F of a law that hardly changes its volume; and of a foam, which keeps its solid: cushions have 0.05 to 0.2 of it
 (Gibson and Ashby, Cellular Solids, 1997, chapter 1).
 """
@@ -42,20 +42,20 @@ FIELDS_V_PER_UM = (
 )
 
 
-def doubts(model: Model, result: PressResult) -> list[str]:
-    """Warnings, one for each kind and layer."""
-    return [*_collapsed(model, result), *_unstable(model, result), *_wild_field(model, result)]
+def validity_warnings(model: Model, result: PressResult) -> list[str]:
+    """Warnings, one sentence for each kind and layer, about states that no real segment reaches."""
+    return [*_collapse_warnings(model, result), *_stability_warnings(model, result), *_field_warnings(model, result)]
 
 
-def _part(result: PressResult) -> slice:
-    """The elements of the part that was solved; their mirror images follow them and have the same values."""
+def _solved_part(result: PressResult) -> slice:
+    """Slice of the elements that were solved; their mirror images follow them and have the same values."""
     return slice(len(result.tet_mesh.tets) // 2 ** len(result.planes))
 
 
-def _of_layer(result: PressResult, layer: str) -> Ints:
-    """The elements of a layer in the part that was solved."""
+def _layer_elements(result: PressResult, layer: str) -> Ints:
+    """Numbers of the elements of a layer in the part that was solved."""
     tet_mesh = result.tet_mesh
-    return np.flatnonzero(tet_mesh.region[_part(result)] == tet_mesh.region_names.index(layer))
+    return np.flatnonzero(tet_mesh.region[_solved_part(result)] == tet_mesh.region_names.index(layer))
 
 
 def smallest_volumes(nodes_mm: Floats, displacements_m: Iterable[Floats]) -> tuple[Floats, Floats]:
@@ -63,56 +63,59 @@ def smallest_volumes(nodes_mm: Floats, displacements_m: Iterable[Floats]) -> tup
     integrated, and elsewhere, which is at the nodes and of straight edges.
     """
     inside, at_nodes = tetrahedron()[0], CORNERS_AND_MIDDLES
-    rest = _determinants(nodes_mm, inside), _determinants(nodes_mm, at_nodes), _edges(nodes_mm)
+    rest = _determinants(nodes_mm, inside), _determinants(nodes_mm, at_nodes), _corner_volumes(nodes_mm)
     smallest = np.full((2, len(nodes_mm)), np.inf)
     for displacement_m in displacements_m:
         moved = nodes_mm + 1e3 * displacement_m
-        beside = (_determinants(moved, at_nodes) / rest[1]).min(axis=1), _edges(moved) / rest[2]
+        beside = (_determinants(moved, at_nodes) / rest[1]).min(axis=1), _corner_volumes(moved) / rest[2]
         now = (_determinants(moved, inside) / rest[0]).min(axis=1), np.minimum(*beside)
         smallest = np.minimum(smallest, now)
     return smallest[0], smallest[1]
 
 
 def _determinants(nodes: Floats, points: Floats) -> Floats:
-    """Of the Jacobian (m, q) at reference points (q, 3)."""
+    """Determinants (m, q) of the Jacobian of elements with nodes (m, 10, 3) at reference points (q, 3)."""
     return determinants(np.einsum("qna,mni->mqia", quadratic(points)[1], nodes, optimize=True))
 
 
-def _edges(nodes: Floats) -> Floats:
-    """Six times the volume (m,) of the tetrahedra of the corners."""
+def _corner_volumes(nodes: Floats) -> Floats:
+    """Six times the volume (m,) of the tetrahedra that the corners of elements span with straight edges."""
     return determinants(nodes[:, 1:4] - nodes[:, :1])
 
 
-def _collapsed(model: Model, result: PressResult) -> Iterator[str]:
-    tet_mesh, part = result.tet_mesh, _part(result)
+def _collapse_warnings(model: Model, result: PressResult) -> Iterator[str]:
+    """A sentence for each layer with an element that is turned inside out or crushed."""
+    tet_mesh, part = result.tet_mesh, _solved_part(result)
     tets = tet_mesh.tets[part]
     moved = (step.fields.displacement_m[tets] for step in result.steps)
     inside, elsewhere = smallest_volumes(tet_mesh.points_mm[tets], moved)
     layers = [(layer, material) for layer, material in model.materials.items() if layer in tet_mesh.region_names]
     advice = "what is computed near it is not to be trusted; press less deep or mesh finer"
     for layer, material in layers:
-        tets = _of_layer(result, layer)
+        tets = _layer_elements(result, layer)
         soft = not isinstance(material, PiezoelectricFilm) and material.law.compressible
-        limit = SOLID if soft else CRUSHED
+        limit = CRUSHED_FOAM_VOLUME if soft else CRUSHED_RUBBER_VOLUME
         turned, crushed = int(tets[np.argmin(elsewhere[tets])]), int(tets[np.argmin(inside[tets])])
         if elsewhere[turned] <= 0.0:
-            yield f"an element of {layer} is turned inside out at a corner{_at(tet_mesh, turned)}: {advice}"
+            yield f"an element of {layer} is turned inside out at a corner{_place_words(tet_mesh, turned)}: {advice}"
         elif inside[crushed] <= limit:
             volume = f"{100.0 * inside[crushed]:.2g} % of its volume"
-            yield f"an element of {layer} is crushed to {volume}{_at(tet_mesh, crushed)}: {advice}"
+            yield f"an element of {layer} is crushed to {volume}{_place_words(tet_mesh, crushed)}: {advice}"
 
 
-def _at(tet_mesh: TetMesh, element: int) -> str:
+def _place_words(tet_mesh: TetMesh, element: int) -> str:
+    """The middle of an element as a message states it."""
     x, y, z = tet_mesh.points_mm[tet_mesh.tets[element, :4]].mean(axis=0)
     return f" at x = {x:.2f}, y = {y:.2f}, z = {z:.2f} mm"
 
 
-def _unstable(model: Model, result: PressResult) -> Iterator[str]:
+def _stability_warnings(model: Model, result: PressResult) -> Iterator[str]:
+    """A sentence for each layer whose law has no positive stiffness at the strains of the press."""
     tet_mesh = result.tet_mesh
     for layer, material in model.materials.items():
         if isinstance(material, PiezoelectricFilm) or layer not in tet_mesh.region_names:
             continue
-        tets = _of_layer(result, layer)
+        tets = _layer_elements(result, layer)
         for step in result.steps:
             strain = from_voigt(step.fields.green_lagrange_strain[tets])
             squared: Floats = np.asarray(2.0 * np.linalg.eigvalsh(strain) + 1.0, dtype=np.float64)
@@ -129,7 +132,7 @@ def _unstable(model: Model, result: PressResult) -> Iterator[str]:
 
 
 def has_positive_stiffness(law: MediumLaw, squared_stretches: Floats) -> Bools:
-    """Whether a law has it at squares of principal stretches (n, 3), shape (n,)."""
+    """Whether a law has positive stiffness (n,) at squares (n, 3) of the principal stretches."""
     stress, tangent = law.stress(squared_stretches[:, :, None] * np.eye(3))
     square = squared_stretches
     slope = square[:, :, None] * tangent[:, :3, :3] * square[:, None, :]
@@ -141,7 +144,7 @@ def has_positive_stiffness(law: MediumLaw, squared_stretches: Floats) -> Bools:
 
 
 def positive_definite(matrices: Floats) -> Bools:
-    """Whether symmetric matrices (n, d, d), d at most 3, are, shape (n,): all leading minors positive (Sylvester)."""
+    """Whether symmetric matrices (n, d, d) are positive definite (n,), d at most 3: by leading minors (Sylvester)."""
     size = matrices.shape[-1]
     minors = [matrices[:, 0, 0], matrices[:, 0, 0] * matrices[:, 1, 1] - matrices[:, 0, 1] ** 2]
     if size == 3:
@@ -149,7 +152,8 @@ def positive_definite(matrices: Floats) -> Bools:
     return np.asarray(np.all([minor > 0.0 for minor in minors], axis=0))
 
 
-def _wild_field(model: Model, result: PressResult) -> Iterator[str]:
+def _field_warnings(model: Model, result: PressResult) -> Iterator[str]:
+    """One sentence where the open-circuit voltage is beyond a limit of PVDF film."""
     voltage = max(float(np.abs(step.open_circuit_voltage_V).max()) for step in result.steps)
     field = voltage / model.segment.film.thickness_um
     for limit, said in FIELDS_V_PER_UM:

@@ -35,7 +35,7 @@ class Waveform(Table):
         return made
 
     def lacks(self, name: str) -> bool:
-        """A file is not missing where its rows were given in its place."""
+        """Whether a key is missing; the file is not where its rows were given in its place."""
         return self._samples is None and super().lacks(name)
 
     @property
@@ -45,5 +45,5 @@ class Waveform(Table):
 
     @property
     def samples(self) -> Floats | None:
-        """Times and fractions (t, 2) of one that was made through them, else None."""
+        """Times and fractions (t, 2) of a waveform that was made through them, else None."""
         return self._samples

@@ -23,7 +23,7 @@ from softdot.config.schema import Config
 from softdot.prepared_press import PreparedPress
 from solve.materials.film import FilmLaw, film_law
 from solve.materials.parameters import PiezoelectricFilm
-from solve.symmetry import mirrored_dot, mirrored_law
+from solve.symmetry import dot_is_mirrored, law_is_mirrored
 
 
 class ArrayCase:
@@ -170,7 +170,9 @@ class ArrayCase:
             return ()
         place = self.layout.places[0]
         at_origin = replace(press.dot, origin_mm=press.dot.origin_mm - [place.x_mm, place.y_mm, 0.0])
-        return tuple(axis for axis in (0, 1) if mirrored_law(self._film_law, axis) and mirrored_dot(at_origin, axis))
+        return tuple(
+            axis for axis in (0, 1) if law_is_mirrored(self._film_law, axis) and dot_is_mirrored(at_origin, axis)
+        )
 
     def images(self, number: int) -> list[int]:
         """Numbers of the segments whose presses are images of that of one, itself first."""

@@ -119,7 +119,7 @@ class KitPress:
     def _value(self, moved: Config) -> Response:
         if path_matters(moved):
             return value_along(moved, morphed_mesh(self._mesh, self.config.segment, moved.segment))
-        return Response(*self._full_load.beside(model_of(moved)))
+        return Response(*self._full_load.similar_answer(model_of(moved)))
 
 
 def path_matters(config: Config) -> bool:

@@ -26,7 +26,8 @@ def cauchy_green(f: Floats) -> Floats:
 
 
 def green_lagrange(gradient: Floats, displacement: Floats) -> Floats:
-    """E = (H + H^t + H^t H) / 2, H = du/dX, (m, q, 6) with engineering shears, of the arguments of F.
+    """Strain E = (H + H^t + H^t H) / 2, H = du/dX, (m, q, 6) with engineering shears, from gradients (m, q, n, 3) and
+    nodal displacements (m, n, 3).
 
     Not from F^t F - 1: a stiff film at a strain near round-off would not know its stress.
     """

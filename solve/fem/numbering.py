@@ -67,10 +67,10 @@ def number(
     in parallel or each alone. freed : surfaces that are not held still.
     """
     twin = tet_mesh.twin
-    free = _free(tet_mesh, fixed_nodes(tet_mesh, held_regions, freed), plane_strain)
+    free = _free_displacements(tet_mesh, fixed_nodes(tet_mesh, held_regions, freed), plane_strain)
     displacement = np.full(free.shape, -1)
     displacement[free] = numbers.take(int(free.sum()))
-    pressure, corners = _pressures(tet_mesh, numbers, without_pressure)
+    pressure, corners = _pressure_numbers(tet_mesh, numbers, without_pressure)
     contact = np.full(len(free), -1)
     touching = np.unique(twin[tet_mesh.facets["contact"]])
     contact[touching] = numbers.take(len(touching))
@@ -84,8 +84,8 @@ def number(
     return Unknowns(new[displacement][twin], new[pressure], voltage, new[contact][twin], dot)
 
 
-def _free(tet_mesh: TetMesh, fixed: Ints, plane_strain: bool) -> Bools:
-    """Which displacements are unknown (n, 3); of twins only the first."""
+def _free_displacements(tet_mesh: TetMesh, fixed: Ints, plane_strain: bool) -> Bools:
+    """Whether each displacement (n, 3) is an unknown; of twins only the first is."""
     free = np.zeros((len(tet_mesh.points_mm), 3), bool)
     free[tet_mesh.twin[tet_mesh.tets]] = True
     free[tet_mesh.twin[fixed]] = False
@@ -96,8 +96,8 @@ def _free(tet_mesh: TetMesh, fixed: Ints, plane_strain: bool) -> Bools:
     return free
 
 
-def _pressures(tet_mesh: TetMesh, numbers: Numbers, without_pressure: tuple[str, ...]) -> tuple[Ints, Ints]:
-    """Numbers (m, 4) at the corners of the tetrahedra, -1 where there is none, and the node of each number."""
+def _pressure_numbers(tet_mesh: TetMesh, numbers: Numbers, without_pressure: tuple[str, ...]) -> tuple[Ints, Ints]:
+    """Numbers (m, 4) of the pressures at the corners of the tetrahedra, -1 for none, and the node of each number."""
     pressure, nodes = np.full((len(tet_mesh.tets), 4), -1), [np.zeros(0, np.int64)]
     for region, name in enumerate(tet_mesh.region_names):
         if name in without_pressure:

@@ -14,7 +14,7 @@ from foundation.arrays import Floats, Ints
 
 @dataclass(frozen=True)
 class Tangent:
-    """upper : (n, n) upper triangle; excess : L on the same pattern, None for a symmetric tangent."""
+    """Sparse matrix. upper : (n, n) upper triangle; excess : L on the same pattern, None for a symmetric tangent."""
 
     upper: sp.csr_matrix
     excess: sp.csr_matrix | None = None
@@ -27,22 +27,22 @@ class Tangent:
 
     @property
     def diagonal(self) -> Floats:
-        """Its entries (n,)."""
+        """Diagonal entries (n,)."""
         return np.asarray(self.upper.data[self._leading])
 
     @property
     def _leading(self) -> Ints:
-        """Where the diagonal is: it leads each row of an upper triangle."""
+        """Places (n,) of the diagonal in the data: it leads each row of an upper triangle."""
         return np.asarray(self.upper.indptr[:-1])
 
-    def shifted(self, by: Floats) -> "Tangent":
-        """With (n,) added to the diagonal."""
+    def with_shift(self, by: Floats) -> "Tangent":
+        """The tangent with a shift (n,) added to its diagonal."""
         upper = self.upper.copy()
         upper.data[self._leading] += by
         return Tangent(upper, self.excess)
 
     def absolute(self) -> "Tangent":
-        """|A|, entry by entry."""
+        """The tangent of absolute values, entry by entry."""
         upper = abs(self.upper)
         if self.excess is None:
             return Tangent(upper)
@@ -51,7 +51,7 @@ class Tangent:
         return Tangent(upper, excess)
 
     def full(self) -> sp.csr_matrix:
-        """Both triangles, explicit zeros kept so that the pattern never changes."""
+        """The matrix of both triangles, explicit zeros kept so that the pattern never changes."""
         upper = self.upper
         rows = np.repeat(np.arange(upper.shape[0]), np.diff(upper.indptr))
         strict = rows != upper.indices

@@ -17,17 +17,17 @@ STRESS, TANGENT = np.zeros((1, 1, 6)), np.zeros((1, 1, 6, 6))
 DOFS, PRESSURE = np.arange(34)[None], np.zeros((1, 4))
 
 
-def compile_dear() -> None:
-    """The kernels of elements, two thirds of the whole time. numba keeps what it compiles for other processes."""
+def compile_element_kernels() -> None:
+    """Compile the kernels of elements, two thirds of the whole time; numba keeps them for other processes."""
     ke, re = np.zeros((1, 31, 31)), np.zeros((1, 31))
     film_solid(GRADIENT, ONE, F, STRESS, TANGENT, ONE, np.zeros(6), 1.0, 1.0, ke, re)
     ke, re = np.zeros((1, 34, 34)), np.zeros((1, 34))
-    # the last one: solve.fem.warm_up.compiled asks for it
+    # the last one: solve.fem.warm_up.is_compiled asks for it
     mixed_solid(GRADIENT, ONE, PRESSURE, F, PRESSURE, 1.0, STRESS, TANGENT, ke, re)
 
 
-def compile_cheap() -> None:
-    """The others: a process that waits for the first ones can do these."""
+def compile_other_kernels() -> None:
+    """Compile the other kernels, as a process can that waits for those of the elements."""
     deformation_gradient(GRADIENT, STILL)
     smallest_jacobian(F)
     green_lagrange(GRADIENT, STILL)
@@ -37,6 +37,6 @@ def compile_cheap() -> None:
     scatter(np.zeros((1, 34, 34)), np.zeros((1, 34)), DOFS, pattern.slots[0], data, residual)
 
 
-def compiled() -> bool:
-    """Whether the kernels are kept on this machine, as numba keeps them; else the first press compiles them."""
+def is_compiled() -> bool:
+    """Whether numba has the kernels on disk; else the first press compiles them."""
     return any(Path(mixed_solid.kernel.stats.cache_path or "").glob("*.mixed_solid-*.nbc"))

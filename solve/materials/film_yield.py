@@ -29,7 +29,7 @@ MAX_ITERATIONS = 50  # Newton's; four or five do
 
 
 def von_mises(stress: Floats) -> Floats:
-    """q (n,) of the stress (n, 6)."""
+    """Equivalent stress q (n,) of stresses (n, 6)."""
     normal, shear = stress[:, :3], stress[:, 3:]
     deviator = normal - normal.mean(axis=1, keepdims=True)
     q: Floats = np.sqrt(1.5 * (deviator**2).sum(axis=1) + 3.0 * (shear**2).sum(axis=1))
@@ -66,7 +66,7 @@ class YieldLaw:
 
     @cached_property
     def modes(self) -> tuple[Floats, Floats]:
-        """p_k (6,) and v_k (6, 6), one a column."""
+        """Eigenvalues p_k (6,) and eigenvectors v_k (6, 6), one a column, of P v = p C^-1 v."""
         p, v = scipy.linalg.eigh(DEVIATOR, np.linalg.inv(self.stiffness))
         p[0] = 0.0  # a pressure is no deviator; round-off would grow with its square
         return p, v
@@ -82,13 +82,13 @@ class YieldLaw:
         strength = self.yield_stress + self.hardening * kappa
         beyond = np.flatnonzero(~(von_mises(stress) <= strength))
         if len(beyond):
-            stress[beyond], tangent[beyond], plastic_strain[beyond], increment = self._return(
+            stress[beyond], tangent[beyond], plastic_strain[beyond], increment = self._return_to_surface(
                 trial_strain[beyond], strength[beyond]
             )
             new_kappa[beyond] += increment
         return Projection(stress, tangent, plastic_strain, new_kappa)
 
-    def _return(self, trial_strain: Floats, strength: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    def _return_to_surface(self, trial_strain: Floats, strength: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """Stress, tangent, plastic strain and increment of kappa at points beyond the strength Y0 (n,)."""
         p, v = self.modes
         multiplier, q = self._multiplier(trial_strain @ v, strength)
@@ -103,7 +103,7 @@ class YieldLaw:
         return stress, tangent, multiplier[:, None] * flow, multiplier * q / 1.5
 
     def _multiplier(self, amplitude: Floats, strength: Floats) -> tuple[Floats, Floats]:
-        """L (n,) and q (n,) for the amplitudes v_k . Et (n, 6)."""
+        """Multiplier L (n,) and equivalent stress q (n,) for amplitudes v_k . Et (n, 6) and strengths Y0 (n,)."""
         p = self.modes[0]
         share = 1.5 * p * amplitude**2
         multiplier = np.zeros(len(share))
@@ -128,13 +128,13 @@ class FilmPlasticity:
     law: YieldLaw
     needs_energy = False
 
-    def scaled(self, factor: float) -> "FilmPlasticity":
+    def scale_moduli(self, factor: float) -> "FilmPlasticity":
         """The law with its moduli times a factor, for another unit of stress."""
         law = self.law
         return replace(self, law=YieldLaw(factor * law.stiffness, factor * law.yield_stress, factor * law.hardening))
 
     def start(self, points: int, components: int = 6) -> Memory:
-        """Plastic strain (n, 6) and equivalent plastic strain (n,)."""
+        """Plastic strain (n, 6) and equivalent plastic strain (n,) at rest, which are zero."""
         return np.zeros((points, 6)), np.zeros(points)
 
     def update(self, elastic: StressResponse, memory: Memory, time_step: float) -> tuple[StressResponse, Memory]:
@@ -145,7 +145,7 @@ class FilmPlasticity:
         return StressResponse(result.stress, result.tangent), (plastic + result.plastic_strain, result.kappa)
 
     def time_error(self, memory: Memory, new: Memory, time_step: float, after_kink: bool) -> float:
-        """No rate enters."""
+        """Zero: no rate enters the law."""
         return 0.0
 
 
@@ -160,7 +160,7 @@ class Yield(StatedLaw):
 
     @property
     def is_off(self) -> bool:
-        """It never yields."""
+        """Whether the film never yields."""
         return bool(np.isinf(self.stress_MPa))
 
     def around(self, elastic: Any, MPa: float) -> Inelastic:

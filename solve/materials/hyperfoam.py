@@ -37,7 +37,7 @@ class HyperfoamLaw:
         """True: the law gives the whole stress, there is no pressure unknown."""
         return True
 
-    def scaled(self, factor: float) -> "HyperfoamLaw":
+    def scale_moduli(self, factor: float) -> "HyperfoamLaw":
         """The law with its moduli times a factor, for another unit of stress."""
         return HyperfoamLaw(tuple(factor * m for m in self.mu), self.alpha, self.beta)
 

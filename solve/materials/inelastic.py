@@ -28,7 +28,7 @@ class Inelastic(Protocol):
 
     @property
     def needs_energy(self) -> bool:
-        """Whether Response.energy is read."""
+        """Whether StressResponse.energy is read."""
 
     def start(self, points: int, components: int = 6) -> Memory:
         """Memory of n quadrature points at rest; components : of a stress, or of a bond's jump."""
@@ -36,7 +36,7 @@ class Inelastic(Protocol):
     def update(self, elastic: StressResponse, memory: Memory, time_step: float) -> tuple[StressResponse, Memory]:
         """Response and memory at the end of a time step (s)."""
 
-    def scaled(self, factor: float) -> "Inelastic":
+    def scale_moduli(self, factor: float) -> "Inelastic":
         """The law with its moduli times a factor, for another unit of stress."""
 
     def time_error(self, memory: Memory, new: Memory, time_step: float, after_kink: bool) -> float:
@@ -69,20 +69,20 @@ SOFTENING, YIELD, RELAXATION = 0.0, 1.0, 2.0
 """The order of the laws: what relaxes is the stress that softening and yield leave."""
 
 
-def in_order(laws: Sequence[StatedLaw]) -> list[StatedLaw]:
-    """From the elastic law on."""
+def sort_laws(laws: Sequence[StatedLaw]) -> list[StatedLaw]:
+    """Laws in the order in which they act, from the elastic one on."""
     return sorted(laws, key=lambda law: law.order)
 
 
-def at_rest(laws: Sequence[Inelastic], points: int, components: int = 6) -> tuple[Memory, ...]:
-    """Memories of laws that act one after the other."""
+def rest_memories(laws: Sequence[Inelastic], points: int, components: int = 6) -> tuple[Memory, ...]:
+    """Memories at rest of laws that act one after the other, at a number of quadrature points."""
     return tuple(law.start(points, components) for law in laws)
 
 
 def respond(
     laws: Sequence[Inelastic], elastic: StressResponse, memories: Sequence[Memory], time_step: float
 ) -> tuple[StressResponse, tuple[Memory, ...]]:
-    """Each law on the response of the one before: the last response, and the new memories."""
+    """Apply each law to the response of the one before; returns the last response and the new memories."""
     response, new = elastic, []
     for law, memory in zip(laws, memories, strict=True):
         response, now = law.update(response, memory, time_step)
@@ -93,6 +93,6 @@ def respond(
 def time_error(
     laws: Sequence[Inelastic], old: Sequence[Memory], new: Sequence[Memory], time_step: float, after_kink: bool
 ) -> float:
-    """The largest of their errors."""
+    """Largest error of the time integration of these laws in a step, relative to the largest stress."""
     each = zip(laws, old, new, strict=True)
     return max((law.time_error(before, now, time_step, after_kink) for law, before, now in each), default=0.0)

@@ -17,24 +17,24 @@ from solve.tensors import to_voigt
 
 
 class MediumLaw(Protocol):
-    """What the element needs of a medium."""
+    """Law of a medium, as the element asks for it."""
 
     def __hash__(self) -> int:
-        """Of its constants: answers of a law can be kept."""
+        """Hash of the constants, by which answers of a law are kept."""
 
     @property
     def bulk_modulus(self) -> float:
-        """K, in the unit of stress of the law."""
+        """Bulk modulus K in the law's unit of stress."""
 
     @property
     def shear_modulus(self) -> float:
-        """Small-strain shear modulus, same unit."""
+        """Small-strain shear modulus in the law's unit of stress."""
 
     @property
     def compressible(self) -> bool:
         """True when stress and energy are whole; False when they are isochoric and the pressure is an unknown."""
 
-    def scaled(self, factor: float) -> "MediumLaw":
+    def scale_moduli(self, factor: float) -> "MediumLaw":
         """The law with its moduli times a factor, for another unit of stress."""
 
     def stress(self, cauchy_green: Floats) -> tuple[Floats, Floats]:
@@ -67,7 +67,7 @@ class InvariantLaw:
         """False: the pressure is an unknown."""
         return False
 
-    def scaled(self, factor: float) -> "InvariantLaw":
+    def scale_moduli(self, factor: float) -> "InvariantLaw":
         """The law with its moduli times a factor, for another unit of stress."""
         return InvariantLaw(*(factor * c for c in (self.c10, self.c01, self.c20, self.c30, self.bulk_modulus)))
 
@@ -102,7 +102,7 @@ class KnowlesLaw:
         """False: the pressure is an unknown."""
         return False
 
-    def scaled(self, factor: float) -> "KnowlesLaw":
+    def scale_moduli(self, factor: float) -> "KnowlesLaw":
         """The law with its moduli times a factor, for another unit of stress."""
         return replace(self, c10=factor * self.c10, bulk_modulus=factor * self.bulk_modulus)
 
@@ -136,7 +136,7 @@ class OgdenLaw:
         """False: the pressure is an unknown."""
         return False
 
-    def scaled(self, factor: float) -> "OgdenLaw":
+    def scale_moduli(self, factor: float) -> "OgdenLaw":
         """The law with its moduli times a factor, for another unit of stress."""
         return OgdenLaw(tuple(factor * m for m in self.mu), self.alpha, factor * self.bulk_modulus)
 
@@ -167,7 +167,7 @@ class LinearLaw:
         """False: the pressure is an unknown."""
         return False
 
-    def scaled(self, factor: float) -> "LinearLaw":
+    def scale_moduli(self, factor: float) -> "LinearLaw":
         """The law with its moduli times a factor, for another unit of stress."""
         return replace(self, shear_modulus=factor * self.shear_modulus, bulk_modulus=factor * self.bulk_modulus)
 

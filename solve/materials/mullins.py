@@ -31,19 +31,19 @@ class Softening(StatedLaw):
 
     @property
     def is_off(self) -> bool:
-        """No stress is lost."""
+        """Whether no stress is lost."""
         return self.loss == 0.0
 
     def around(self, elastic: Any, MPa: float) -> "Softening":
         """The law in the solver's unit of stress."""
-        return self.scaled(MPa)
+        return self.scale_moduli(MPa)
 
-    def scaled(self, factor: float) -> "Softening":
+    def scale_moduli(self, factor: float) -> "Softening":
         """The law with its moduli times a factor, for another unit of stress."""
         return replace(self, energy=factor * self.energy)
 
     def start(self, points: int, components: int = 6) -> Memory:
-        """The largest energy so far (n,)."""
+        """The largest energy so far (n,), which is zero at rest."""
         return (np.zeros(points),)
 
     def update(self, elastic: StressResponse, memory: Memory, time_step: float) -> tuple[StressResponse, Memory]:
@@ -57,7 +57,7 @@ class Softening(StatedLaw):
         return replace(elastic, stress=stress, tangent=tangent), (largest,)
 
     def time_error(self, memory: Memory, new: Memory, time_step: float, after_kink: bool) -> float:
-        """No rate enters."""
+        """Zero: no rate enters the law."""
         return 0.0
 
     def _factor(self, energy: Floats, largest: Floats, rounding: Floats) -> tuple[Floats, Floats]:

@@ -41,7 +41,9 @@ class MultiplicativeMaxwell(Prony):
         return replace(self, shear_modulus=elastic.shear_modulus)
 
     def start(self, points: int, components: int = 6) -> Memory:
-        """That of a Prony series; C_i (n, i, 6), and C^ (n, 6) at the last step."""
+        """Memory at rest: that of a Prony series; then C_i (n, i, 6), and C^ (n, 6) at the last step, all of
+        them one.
+        """
         unit = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
         branches = np.tile(unit, (points, len(self.relative_moduli), 1))
         return *super().start(points, components), branches, np.tile(unit, (points, 1))
@@ -63,13 +65,14 @@ class MultiplicativeMaxwell(Prony):
 
 @piece()
 def flow_weights(a, s):  # type: ignore[no-untyped-def]
-    """Of C_i, of C^ before and of C^ after a step of a = dt / tau_i."""
+    """Weights in A of C_i, and of C^ before and after a step of a = dt / tau_i, with s from before the step."""
     fade, gain = np.exp(-a * s), mean_decay(a * s)
     return fade, (gain - fade) / s, (1.0 - gain) / s
 
 
 @piece()
-def _contracted(a, b):  # type: ignore[no-untyped-def]
+def _double_contraction(a, b):  # type: ignore[no-untyped-def]
+    """Sum of a_ij b_ij of two matrices (3, 3)."""
     total = 0.0
     for i in range(3):
         for j in range(3):
@@ -78,16 +81,17 @@ def _contracted(a, b):  # type: ignore[no-untyped-def]
 
 
 @piece()
-def _fill(six, out):  # type: ignore[no-untyped-def]
+def _fill_tensor(six, out):  # type: ignore[no-untyped-def]
+    """Write a symmetric tensor of six numbers into out (3, 3)."""
     for i in range(3):
         for j in range(3):
             out[i, j] = six[NUMBER_OF[i, j]]
 
 
 @piece()
-def _stepped(step, flowed, before, now, a, g):  # type: ignore[no-untyped-def]
-    """A into a and C_i^-1 into g, (3, 3) each; returns det(A)^(1/3) and the weight of C^ after the step."""
-    _fill(flowed, a)
+def _advance_branch(step, flowed, before, now, a, g):  # type: ignore[no-untyped-def]
+    """Write A into a and C_i^-1 into g, (3, 3) each; returns det(A)^(1/3) and the weight of C^ after the step."""
+    _fill_tensor(flowed, a)
     inverse(a, g)
     s = 0.0
     for i in range(3):
@@ -115,7 +119,7 @@ def _add_branches(start, stop, cauchy_green, before, flowed, steps, moduli, stre
         for v in range(6):
             now[n, v] = j23 * c[I_OF[v], J_OF[v]]
         for b in range(len(moduli)):
-            root, of_now = _stepped(steps[b], flowed[n, b], before[n], now[n], a, g)
+            root, of_now = _advance_branch(steps[b], flowed[n, b], before[n], now[n], a, g)
             for v in range(6):
                 new[n, b, v] = a[I_OF[v], J_OF[v]] / root
             _add_branch(c, ci, j23, g, of_now / root, moduli[b], stress[n], tangent[n])
@@ -125,9 +129,9 @@ def _add_branches(start, stop, cauchy_green, before, flowed, steps, moduli, stre
 def _add_branch(c, ci, j23, g, h, modulus, stress, tangent):  # type: ignore[no-untyped-def]
     """dG/dC^ is H = h (G x G / 3 - G (.) G); x is H : C."""
     gcg = g @ c @ g
-    s = _contracted(c, g)
+    s = _double_contraction(c, g)
     x = h * (s / 3.0 * g - gcg)
-    cx = _contracted(c, x)
+    cx = _double_contraction(c, x)
     for v in range(6):
         i, j = I_OF[v], J_OF[v]
         stress[v] += modulus * j23 * (g[i, j] - s / 3.0 * ci[i, j])

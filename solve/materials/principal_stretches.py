@@ -60,7 +60,7 @@ def _principal(c, square, vector):  # type: ignore[no-untyped-def]
 
 @piece()
 def _turn_back(vector, normal, block, shear, basis, image, stress, tangent):  # type: ignore[no-untyped-def]
-    """S (6,) and CC (6, 6) from S_a (3,), the coefficients (3, 3) of the first sum of CC and D_01, D_12, D_02."""
+    """Write S (6,) and CC (6, 6) from S_a (3,), the coefficients (3, 3) of the first sum of CC and D_01, D_12, D_02."""
     for v in range(6):
         i, j = I_OF[v], J_OF[v]
         for a in range(3):

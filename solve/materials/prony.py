@@ -39,10 +39,10 @@ class Prony(StatedLaw):
 
     @property
     def is_off(self) -> bool:
-        """Nothing relaxes."""
+        """Whether nothing relaxes."""
         return sum(self.relative_moduli) == 0.0
 
-    def scaled(self, factor: float) -> "Prony":
+    def scale_moduli(self, factor: float) -> "Prony":
         """The series itself: its moduli are relative."""
         return self
 
@@ -56,7 +56,7 @@ class Prony(StatedLaw):
         return np.zeros(shape), np.full(shape, np.nan), np.zeros((points, branches, components))
 
     def decay(self, time_step: float | Floats) -> tuple[Floats, Floats]:
-        """exp(-a) and (1 - exp(-a)) / a of each branch, (i,), or (t, i) of steps (t,)."""
+        """Factors exp(-a) and (1 - exp(-a)) / a of each branch over a step in s, (i,), or (t, i) over steps (t,)."""
         a = np.asarray(time_step, np.float64)[..., None] / np.array(self.relaxation_times)
         return np.exp(-a), mean_decay(a)
 

@@ -35,12 +35,14 @@ Part = TypeVar("Part", bound=CanBeOff)
 
 
 def channels_of(component: str) -> tuple[int, ...]:
-    """channel-2 -> (2,), channel-1-channel-2 -> (1, 2); none of a component that is neither."""
+    """Numbers of the channels in a component: channel-2 -> (2,), channel-1-channel-2 -> (1, 2), none of any other
+    component.
+    """
     return tuple(map(int, findall(r"channel-(\d+)", component)))
 
 
 def in_short(components: Sequence[str]) -> list[str]:
-    """Components for a reader: sixteen channels, or all pairs of them, as one."""
+    """Names of components for a reader, sixteen channels or all pairs of them as one."""
     numbered = [one for one in CHANNELS if one in components]
     paired = [one for one in CHANNEL_PAIRS if one in components]
     rest = [one for one in components if not channels_of(one)]
@@ -48,11 +50,12 @@ def in_short(components: Sequence[str]) -> list[str]:
 
 
 class Parameters(Table):
-    """Numbers only: neither texts nor true and false stand for them."""
+    """Parameters of a mechanism, which are numbers only: neither texts nor true and false stand for them."""
 
     @field_validator("*", mode="before")
     @classmethod
     def _plain(cls, value: Any) -> Any:
+        """Refuse what Python or TOML would take for a number."""
         if any(isinstance(one, str | bool) for one in (value if isinstance(value, list) else [value])):
             raise PydanticCustomError("plain_number", "must be a plain number; its unit is part of the key")
         return value
@@ -60,7 +63,7 @@ class Parameters(Table):
 
 @dataclass(frozen=True)
 class Traits:
-    """What others ask of a mechanism instead of its name.
+    """Properties of a mechanism that others ask for in place of its name.
 
     adds_up : several at one component have one meaning, as their effects add up, multiply or stand in series.
     electrical : it acts behind the film alone.

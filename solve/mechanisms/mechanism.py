@@ -26,7 +26,7 @@ class Mechanism(Table):
     parameters: dict[str, Any] = Field({}, description="its numbers, by name with their unit")
 
     @model_validator(mode="after")
-    def _known(self) -> Self:
+    def _refuse_unknown_names(self) -> Self:
         if self.name not in MECHANISMS:
             raise ValueError(f"name = '{self.name}': {nearest_name_hint(self.name, MECHANISMS)}")
         kind = MECHANISMS[self.name]
@@ -43,7 +43,7 @@ class Mechanism(Table):
 
     @property
     def traits(self) -> Traits:
-        """What the physics asks of others."""
+        """Traits of the physics, which others ask for in place of its name."""
         return MECHANISMS[self.name].traits
 
     def values(self) -> Any:

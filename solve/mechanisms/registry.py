@@ -17,5 +17,5 @@ for _module in sorted(found.name for found in walk_packages([str(Path(__file__).
 
 
 def traits_of(name: str) -> Traits:
-    """Of a mechanism; the default ones of a name that is none, such as that of a nuisance parameter."""
+    """Traits of a mechanism; the default ones of a name that is none, such as that of a nuisance parameter."""
     return MECHANISMS[name].traits if name in MECHANISMS else Traits()

@@ -20,13 +20,13 @@ from solve.readout.stages import Saturation, Stage
 def amplify(time_s: Floats, charge_C: Floats, capacitance_F: float, readout: Readout, physics: Physics) -> Floats:
     """Voltage (t,) from the film's short-circuit charge (t,) at times (t,), from rest."""
     voltage = leaky_integral(time_s, charge_C, *input_of(readout, capacitance_F))
-    return behind_input(time_s, voltage, readout, physics)
+    return output_voltage(time_s, voltage, readout, physics)
 
 
-def behind_input(time_s: Floats, voltage_V: Floats, readout: Readout, physics: Physics, channel: int = 0) -> Floats:
-    """What an amplifier gives (t,) for the voltage (t,) at its input; channel as in stages."""
+def output_voltage(time_s: Floats, voltage_V: Floats, readout: Readout, physics: Physics, channel: int = 0) -> Floats:
+    """Voltage (t,) that an amplifier gives for the voltage (t,) at its input; channel as in stages."""
     for stage in stages(readout, physics, channel):
-        voltage_V = stage.applied(time_s, voltage_V)
+        voltage_V = stage.apply(time_s, voltage_V)
     return np.asarray(readout.polarity * voltage_V)
 
 
@@ -39,7 +39,7 @@ def input_of(readout: Readout, film_capacitance_F: float) -> tuple[float, float]
 
 
 def stages(readout: Readout, physics: Physics, channel: int = 0) -> list[Stage]:
-    """Everything behind the input, in order; of one place those of the read-out come first.
+    """Stages behind the input, in order; of one place those of the read-out come first.
 
     channel : from 1, whose own stages come last of their place; 0 for an amplifier of all electrodes.
     """
@@ -53,7 +53,7 @@ def stages(readout: Readout, physics: Physics, channel: int = 0) -> list[Stage]:
 
 @nb.njit(cache=True)
 def leaky_integral(time: Floats, charge: Floats, capacitance: float, resistance: float) -> Floats:
-    """V of C V' = Q' - V / R from rest, shape (n,), exact for a charge linear between the samples."""
+    """Voltage (n,) of C V' = Q' - V / R from rest, exact for a charge linear between the samples."""
     voltage = np.zeros(len(time))
     last, fade, gain = -1.0, 1.0, 1.0
     for n in range(len(time) - 1):
@@ -67,7 +67,8 @@ def leaky_integral(time: Floats, charge: Floats, capacitance: float, resistance:
 
 @nb.njit(cache=True)
 def curved_integral(time: Floats, charge: Floats, capacitance: float, resistance: float) -> Floats:
-    """As leaky_integral, exact for a charge that is a parabola over each two equal steps; n is odd.
+    """Voltage (n,) of C V' = Q' - V / R from rest, exact for a charge that is a parabola over each two equal steps; n
+    odd.
 
     With x = t / RC, p1 = (1 - exp(-x)) / x and p2 = (1 - p1) / x, a charge a t + b t^2 gives (a t p1 + 2 b t^2 p2) / C.
     """

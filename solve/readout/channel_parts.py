@@ -10,20 +10,20 @@ from solve.readout.stages import Stage
 
 
 class ChannelPart:
-    """One part; those methods that are not overridden change nothing."""
+    """One part of the read-out; those methods that are not overridden change nothing."""
 
     @property
     def channels(self) -> tuple[int, ...]:
-        """Those that it needs."""
+        """Numbers of the channels that the part needs."""
         return ()
 
     @property
     def words(self) -> str:
-        """What it is, for a reader."""
-        return f"a part of {self._named}"
+        """Name of the part for a reader."""
+        return f"a part of {self._channel_names}"
 
     @property
-    def _named(self) -> str:
+    def _channel_names(self) -> str:
         return " and ".join(f"'channel-{number}'" for number in self.channels)
 
     def stages_behind(self, channel: int) -> tuple[Stage, ...]:
@@ -31,15 +31,15 @@ class ChannelPart:
         return ()
 
     def conductance_uS(self, channels: int) -> Floats:
-        """What lies parallel to each of the inputs (e,)."""
+        """Conductance (e,) in uS that the part adds parallel to each input."""
         return np.zeros(channels)
 
     def capacitance_F(self, channels: int) -> Floats:
-        """What it adds to the capacitance matrix (e, e) of the inputs. ValueError for a channel that is not there."""
+        """Capacitance matrix (e, e) in F that the part adds between the inputs. ValueError for a missing channel."""
         return np.zeros((channels, channels))
 
-    def mixed_in_V(self, alone_V: Floats) -> Floats:
-        """What it adds (e, t) to the voltages (e, t) that the amplifiers give."""
+    def crosstalk_V(self, alone_V: Floats) -> Floats:
+        """Voltages (e, t) that the part adds to those (e, t) that the amplifiers give alone."""
         return np.zeros_like(alone_V)
 
 
@@ -52,16 +52,16 @@ class ChannelStage(ChannelPart):
 
     @property
     def channels(self) -> tuple[int, ...]:
-        """Its own."""
+        """Number of the channel."""
         return (self.channel,)
 
     @property
     def words(self) -> str:
-        """A filter, as all stages of single channels are."""
-        return f"a filter of {self._named}"
+        """Name of the stage for a reader: a filter, as all stages of single channels are."""
+        return f"a filter of {self._channel_names}"
 
     def stages_behind(self, channel: int) -> tuple[Stage, ...]:
-        """The stage, of its own channel."""
+        """The stage, behind the input of its own channel."""
         return (self.stage,) if channel == self.channel else ()
 
 
@@ -74,16 +74,16 @@ class ChannelLeak(ChannelPart):
 
     @property
     def channels(self) -> tuple[int, ...]:
-        """Its own."""
+        """Number of the channel."""
         return (self.channel,)
 
     @property
     def words(self) -> str:
-        """A leak."""
-        return f"a leak of {self._named}"
+        """Name of the leak for a reader."""
+        return f"a leak of {self._channel_names}"
 
     def conductance_uS(self, channels: int) -> Floats:
-        """Of its own input, where it is there."""
+        """Conductance (e,) in uS: the leak at its own input, where that is there."""
         return np.where(np.arange(1, channels + 1) == self.channel, self.leak_uS, 0.0)
 
 
@@ -97,16 +97,18 @@ class MutualCapacitance(ChannelPart):
 
     @property
     def channels(self) -> tuple[int, ...]:
-        """Both."""
+        """Numbers of the two channels."""
         return (self.one, self.other)
 
     @property
     def words(self) -> str:
-        """Crosstalk of two."""
-        return f"crosstalk between {self._named}"
+        """Name of the crosstalk for a reader."""
+        return f"crosstalk between {self._channel_names}"
 
     def capacitance_F(self, channels: int) -> Floats:
-        """C [[1, -1], [-1, 1]] of the two. ValueError for one that is not there."""
+        """Capacitance matrix C [[1, -1], [-1, 1]] of the two inputs among all (e, e). ValueError for a missing
+        channel.
+        """
         highest = max(self.channels)
         if highest > channels:
             raise ValueError(f"there is no channel {highest}: there are {channels}")
@@ -124,16 +126,16 @@ class Coupling(ChannelPart):
 
     @property
     def channels(self) -> tuple[int, ...]:
-        """Its own."""
+        """Number of the channel."""
         return (self.channel,)
 
     @property
     def words(self) -> str:
-        """Crosstalk into one."""
-        return f"crosstalk into {self._named}"
+        """Name of the crosstalk for a reader."""
+        return f"crosstalk into {self._channel_names}"
 
-    def mixed_in_V(self, alone_V: Floats) -> Floats:
-        """The share of the sum of the others, in its own channel."""
+    def crosstalk_V(self, alone_V: Floats) -> Floats:
+        """Voltages (e, t): in its own channel the share of the sum of the others."""
         added = np.zeros_like(alone_V)
         if self.channel <= len(alone_V):
             own = alone_V[self.channel - 1]
@@ -142,16 +144,16 @@ class Coupling(ChannelPart):
 
 
 def conductances_uS(parts: Iterable[ChannelPart], channels: int) -> Floats:
-    """What leaks from each of the inputs (e,)."""
+    """Conductance (e,) in uS that the parts add parallel to each input."""
     return np.asarray(sum((part.conductance_uS(channels) for part in parts), np.zeros(channels)))
 
 
 def capacitances_F(parts: Iterable[ChannelPart], channels: int) -> Floats:
-    """Matrix (e, e) of what lies between the inputs. ValueError for a channel that is not there."""
+    """Capacitance matrix (e, e) in F that the parts add between the inputs. ValueError for a missing channel."""
     none = np.zeros((channels, channels))
     return np.asarray(sum((part.capacitance_F(channels) for part in parts), none))
 
 
-def mixed_V(parts: Iterable[ChannelPart], alone_V: Floats) -> Floats:
-    """Voltages (e, t) of all channels with what couples into each."""
-    return np.asarray(alone_V + sum((part.mixed_in_V(alone_V) for part in parts), np.zeros_like(alone_V)))
+def with_crosstalk_V(parts: Iterable[ChannelPart], alone_V: Floats) -> Floats:
+    """Voltages (e, t) of all channels with the crosstalk into each."""
+    return np.asarray(alone_V + sum((part.crosstalk_V(alone_V) for part in parts), np.zeros_like(alone_V)))

@@ -17,8 +17,8 @@ from scipy.linalg import eigh
 from foundation.arrays import Floats
 from solve.model import Readout
 from solve.physics import Physics
-from solve.readout.amplifier import behind_input, input_of, leaky_integral
-from solve.readout.channel_parts import capacitances_F, conductances_uS, mixed_V
+from solve.readout.amplifier import input_of, leaky_integral, output_voltage
+from solve.readout.channel_parts import capacitances_F, conductances_uS, with_crosstalk_V
 
 
 def amplify_channels(
@@ -29,13 +29,13 @@ def amplify_channels(
     From rest at times (t,). What leaks from one input, ties two together, filters one channel or mixes what they give
     is in the physics, with channels numbered from 1.
     """
-    return behind_inputs(time_s, input_voltages(time_s, charge_C, capacitance_F, readout, physics), readout, physics)
+    return output_voltages(time_s, input_voltages(time_s, charge_C, capacitance_F, readout, physics), readout, physics)
 
 
-def behind_inputs(time_s: Floats, voltage_V: Floats, readout: Readout, physics: Physics) -> Floats:
-    """What all channels give (e, t) for the voltages (e, t) at their inputs, crosstalk included."""
-    alone = [behind_input(time_s, own, readout, physics, number) for number, own in enumerate(voltage_V, start=1)]
-    return mixed_V(physics.channels, np.array(alone))
+def output_voltages(time_s: Floats, voltage_V: Floats, readout: Readout, physics: Physics) -> Floats:
+    """Voltages (e, t) that all channels give for those (e, t) at their inputs, crosstalk included."""
+    alone = [output_voltage(time_s, own, readout, physics, number) for number, own in enumerate(voltage_V, start=1)]
+    return with_crosstalk_V(physics.channels, np.array(alone))
 
 
 Integral = Callable[[Floats, Floats, float, float], Floats]
@@ -70,5 +70,5 @@ def input_voltages(
 
 
 def _resistance(conductance: float) -> float:
-    """Infinite for none; round-off makes no resistance negative."""
+    """Resistance of a conductance, infinite for none; round-off makes no resistance negative."""
     return 1.0 / conductance if conductance > 0.0 else np.inf

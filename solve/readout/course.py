@@ -18,21 +18,21 @@ import numpy as np
 from foundation.arrays import Floats, Ints
 from solve.model import Press, Readout
 from solve.physics import Physics
-from solve.readout.amplifier import behind_input, curved_integral, input_of, stages
-from solve.readout.channels import behind_inputs, input_voltages
-from solve.readout.legs import PressLeg, legs_of, legs_through
+from solve.readout.amplifier import curved_integral, input_of, output_voltage, stages
+from solve.readout.channels import input_voltages, output_voltages
+from solve.readout.legs import PressLeg, press_legs, timed_legs
 from solve.readout.stages import Hum
 from solve.result import PressResult, Trace
 from solve.solution.schedule import corners_s, first_reached_s, slide_s, stretches_s
 from solve.waveform import Waveform
 
-STRAIGHT = 1e-4
+STRAIGHT_TOLERANCE = 1e-4
 """Of the largest value of a curve: how far the course may be from the straight lines between its times."""
-SMALL = 1e-2
+SMALL_CURVE_SHARE = 1e-2
 """Of the largest of its kind: below it a curve is compared with this instead of its own largest value."""
-FIRST_PARTS, HUM_PARTS, MOST_ROUNDS, MOST_TIMES, SAME_TIME = 4, 16, 45, 20_000, 1e-13
+FIRST_PARTS, HUM_PARTS, MOST_REFINEMENTS, MOST_TIMES, SAME_TIME = 4, 16, 45, 20_000, 1e-13
 TINY = 1e-300
-SAFETY = 2.0
+INTERPOLATION_SAFETY = 2.0
 """Of what straight lines and a soft touch change: with 1.5, 54 of 58 were covered, the others by 0.75 to 0.97."""
 
 
@@ -59,7 +59,7 @@ class PressCourse:
 
 @dataclass(frozen=True)
 class AmplifierChain:
-    """What stands behind electrodes with capacitances (e,); readout : None for nothing."""
+    """The amplifiers behind electrodes with capacitances (e,) in F; readout : None for no amplifier."""
 
     readout: Readout | None
     physics: Physics
@@ -77,19 +77,19 @@ class AmplifierChain:
         return np.vstack([own, curved_integral(time_s, charge_C.sum(axis=1), *together)])
 
     def outputs(self, time_s: Floats, inputs_V: Floats, charge_C: Floats) -> Floats:
-        """What is read (e + 1, n), in the same order; the open circuit without an amplifier."""
+        """Voltages (e + 1, n) that are read, in the order of the inputs; at open circuit without an amplifier."""
         if self.readout is None:
             together = charge_C.sum(axis=1) / self.capacitance_F.sum()
             return np.vstack([(charge_C / self.capacitance_F).T, together])
-        each = behind_inputs(time_s, inputs_V[:-1], self.readout, self.physics)
+        each = output_voltages(time_s, inputs_V[:-1], self.readout, self.physics)
         if len(each) == 1:  # the amplifier of one electrode is that of all
             return np.vstack([each, each])
-        return np.vstack([each, behind_input(time_s, inputs_V[-1], self.readout, self.physics)])
+        return np.vstack([each, output_voltage(time_s, inputs_V[-1], self.readout, self.physics)])
 
-    def read(self, legs: Sequence[PressLeg], time_s: Floats) -> Floats:
-        """What is read (e + 1, n) at times (n,), integrated over the halves between them."""
-        fine = halved(time_s)
-        charge = values(legs, fine)[:, 2:]
+    def readout_V(self, legs: Sequence[PressLeg], time_s: Floats) -> Floats:
+        """Voltages (e + 1, n) that are read at times (n,), integrated over the halves between them."""
+        fine = with_midpoints(time_s)
+        charge = leg_values(legs, fine)[:, 2:]
         return self.outputs(fine, self.inputs(fine, charge), charge)[:, ::2]
 
 
@@ -101,14 +101,14 @@ def course(
     time_s (n,) : on these times only.
     """
     circuit = AmplifierChain(readout, physics, result.capacitance_F)
-    trace, legs = result.trace, legs_of(result, press)
+    trace, legs = result.trace, press_legs(result, press)
     states_s = trace.time_s if result.follows_time else first_reached_s(result.progress, press)
     solved_s = states_s[np.searchsorted(trace.time_s, [step.time_s for step in result.steps])]
     if time_s is None:
-        time_s = _refined(legs, circuit, _first_times(legs, press, circuit, states_s))
-    found, read = values(legs, time_s), circuit.read(legs, time_s)
-    finer = circuit.read(legs, halved(time_s))[:, ::2]
-    off = _for_want_of_states(circuit, legs, time_s, read) + _share(read - finer, read, axis=1)
+        time_s = _refine_times(legs, circuit, _first_times(legs, press, circuit, states_s))
+    found, read = leg_values(legs, time_s), circuit.readout_V(legs, time_s)
+    finer = circuit.readout_V(legs, with_midpoints(time_s))[:, ::2]
+    off = _interpolation_errors(circuit, legs, time_s, read) + _relative_deviations(read - finer, read, axis=1)
     amplified = circuit.readout is not None
     return PressCourse(
         time_s=time_s,
@@ -123,40 +123,40 @@ def course(
     )
 
 
-def _for_want_of_states(circuit: AmplifierChain, legs: Sequence[PressLeg], time_s: Floats, read: Floats) -> Floats:
-    """How far what is read (k, n) may be off between states (k,): what straight lines and a soft touch change."""
-    others = [leg.straight() for leg in legs], [leg.touched_softly() for leg in legs]
-    changes = [_share(read - circuit.read(other, time_s), read, axis=1) for other in others]
-    return np.asarray(SAFETY * np.sum(changes, axis=0))
+def _interpolation_errors(circuit: AmplifierChain, legs: Sequence[PressLeg], time_s: Floats, read: Floats) -> Floats:
+    """Error (k,) of what is read (k, n) for want of states: what straight lines and a soft touch change."""
+    others = [leg.with_straight_lines() for leg in legs], [leg.with_soft_touch() for leg in legs]
+    changes = [_relative_deviations(read - circuit.readout_V(other, time_s), read, axis=1) for other in others]
+    return np.asarray(INTERPOLATION_SAFETY * np.sum(changes, axis=0))
 
 
-def read_together(
+def common_readout_V(
     trace: Trace, capacitance_F: Floats, press: Press, readout: Readout | None, physics: Physics, time_s: Floats
 ) -> Floats | None:
-    """What one amplifier of all electrodes gives (n,) at times (n,), for a trace that followed time; None without one.
+    """Voltage (n,) of one amplifier of all electrodes at times (n,), for a trace that followed time; None without one.
 
     On one grid it depends smoothly on the states, so that differences of it are derivatives.
     """
     circuit = AmplifierChain(readout, physics, capacitance_F)
     if circuit.readout is None:
         return None
-    return np.asarray(circuit.read(legs_through(trace, press), time_s)[-1])
+    return np.asarray(circuit.readout_V(timed_legs(trace, press), time_s)[-1])
 
 
-def halved(time_s: Floats) -> Floats:
-    """The times (n,) and those midway between them, (2 n - 1,)."""
+def with_midpoints(time_s: Floats) -> Floats:
+    """Times (n,) with those midway between them, (2 n - 1,)."""
     fine = np.empty(max(2 * len(time_s) - 1, 0))
     fine[::2], fine[1::2] = time_s, 0.5 * (time_s[1:] + time_s[:-1])
     return fine
 
 
-def values(legs: Sequence[PressLeg], time_s: Floats) -> Floats:
+def leg_values(legs: Sequence[PressLeg], time_s: Floats) -> Floats:
     """Depth, force and charges (n, 2 + e) at times (n,) from the begin of the first leg to the end of the last."""
     ends = np.array([leg.end_s for leg in legs])
     on = np.minimum(np.searchsorted(ends, time_s), len(legs) - 1)
     found = np.empty((len(time_s), legs[0].known.shape[1]))
     for number, leg in enumerate(legs):
-        found[on == number] = leg.of(time_s[on == number])
+        found[on == number] = leg.values_at(time_s[on == number])
     return found
 
 
@@ -177,34 +177,34 @@ def _first_times(legs: Sequence[PressLeg], press: Press, circuit: AmplifierChain
     return np.asarray(times[apart])
 
 
-def _refined(legs: Sequence[PressLeg], circuit: AmplifierChain, time_s: Floats) -> Floats:
-    """Times (n,) halved where straight lines between them do not follow every curve."""
+def _refine_times(legs: Sequence[PressLeg], circuit: AmplifierChain, time_s: Floats) -> Floats:
+    """Halve intervals of times (n,) until straight lines between them follow every curve."""
     least = SAME_TIME * (time_s[-1] - time_s[0])
-    for _ in range(MOST_ROUNDS):
-        fine = halved(time_s)
-        found = values(legs, fine)
+    for _ in range(MOST_REFINEMENTS):
+        fine = with_midpoints(time_s)
+        found = leg_values(legs, fine)
         inputs = circuit.inputs(fine, found[:, 2:])
         kinds = found[:, :1], found[:, 1:2], found[:, 2:], inputs.T, circuit.outputs(fine, inputs, found[:, 2:]).T
-        off = np.max([_off_line(curves) for curves in kinds if curves.shape[1]], axis=0)
-        chosen = (off > STRAIGHT) & (np.diff(time_s) > 4.0 * least)
+        off = np.max([_midpoint_deviations(curves) for curves in kinds if curves.shape[1]], axis=0)
+        chosen = (off > STRAIGHT_TOLERANCE) & (np.diff(time_s) > 4.0 * least)
         if not chosen.any() or len(time_s) + chosen.sum() > MOST_TIMES:
             break
         time_s = np.sort(np.append(time_s, fine[1::2][chosen]))
     return time_s
 
 
-def _off_line(curves: Floats) -> Floats:
-    """How far curves (2 n - 1, k) are from the line between each second value (n - 1,), of their largest values."""
+def _midpoint_deviations(curves: Floats) -> Floats:
+    """Distance (n - 1,) of curves (2 n - 1, k) from the line between each second value, over their largest values."""
     off = curves[1::2] - 0.5 * (curves[:-1:2] + curves[2::2])
-    return np.asarray((np.abs(off) / _sizes(curves, axis=0)).max(axis=1, initial=0.0))
+    return np.asarray((np.abs(off) / _reference_sizes(curves, axis=0)).max(axis=1, initial=0.0))
 
 
-def _share(off: Floats, of: Floats, axis: int) -> Floats:
-    """The largest of each row's deviations, of the row's largest value."""
-    return np.asarray(np.abs(off).max(axis=axis) / _sizes(of, axis))
+def _relative_deviations(off: Floats, of: Floats, axis: int) -> Floats:
+    """Largest deviation of each row over the row's largest value."""
+    return np.asarray(np.abs(off).max(axis=axis) / _reference_sizes(of, axis))
 
 
-def _sizes(curves: Floats, axis: int) -> Floats:
-    """The largest value of each curve, or a share of that of all where it is smaller."""
+def _reference_sizes(curves: Floats, axis: int) -> Floats:
+    """Largest value of each curve, or a share of that of all where it is smaller."""
     each = np.abs(curves).max(axis=axis)
-    return np.asarray(np.maximum(np.maximum(each, SMALL * each.max(initial=0.0)), TINY))
+    return np.asarray(np.maximum(np.maximum(each, SMALL_CURVE_SHARE * each.max(initial=0.0)), TINY))

@@ -39,7 +39,7 @@ class Filter:
     place: ClassVar[int] = FILTER
 
     def transfer(self) -> tuple[Floats, Floats]:
-        """Numerator and denominator of H(s) but for the dead time, highest power first."""
+        """Coefficients of the numerator and denominator of H(s) but for the dead time, highest power first."""
         from scipy.signal import butter  # half a second, which a press without a filter need not wait
 
         corner = 2.0 * np.pi * self.corner_Hz
@@ -49,19 +49,19 @@ class Filter:
         natural = corner / corner_over_natural(self.quality)
         return np.array([natural**2]), np.array([1.0, natural / self.quality, natural**2])
 
-    def applied(self, time_s: Floats, voltage_V: Floats) -> Floats:
-        """Filtered voltage (n,) at increasing times (n,), even or not."""
-        number, recurrences = _steps(self, time_s)
-        filtered = _march(number, *recurrences, voltage_V)
+    def apply(self, time_s: Floats, voltage_V: Floats) -> Floats:
+        """Filter a voltage (n,) at increasing times (n,), even or not."""
+        number, recurrences = _recurrence_of_steps(self, time_s)
+        filtered = _recur(number, *recurrences, voltage_V)
         return filtered if self.delay_s == 0.0 else np.interp(time_s - self.delay_s, time_s, filtered)
 
     def largest_gain(self) -> float:
         """Integral of |impulse response|: by how much it can enlarge the largest value, at any corner."""
-        return _largest_gain(Filter(0.5 / np.pi, self.order, self.kind, self.quality))
+        return _unit_gain(Filter(0.5 / np.pi, self.order, self.kind, self.quality))
 
 
 def corner_over_natural(quality: float) -> float:
-    """w / w0 where half the power of a low-pass of order two is left."""
+    """Ratio w / w0 of the corner, where half the power is left, to the natural frequency of a low-pass of order two."""
     half = 1.0 - 0.5 / quality**2
     return 1.0 / sqrt(hypot(half, 1.0) - half)
 
@@ -69,22 +69,22 @@ def corner_over_natural(quality: float) -> float:
 Recurrences = tuple[Floats, Floats, Floats, Floats, float]
 
 
-def _steps(own: Filter, time_s: Floats) -> tuple[Ints, Recurrences]:
-    """Which recurrence each step between the times takes (n - 1,), and the recurrences of all sizes of step."""
+def _recurrence_of_steps(own: Filter, time_s: Floats) -> tuple[Ints, Recurrences]:
+    """Number of the recurrence of each step between the times (n - 1,), and the recurrences of all sizes of step."""
     step = np.diff(time_s)
     if len(step) == 0:
-        return np.zeros(0, dtype=np.int64), _discrete(own, (1.0,))
+        return np.zeros(0, dtype=np.int64), _discretise(own, (1.0,))
     mean = float(time_s[-1] - time_s[0]) / len(step)
     even = time_s[0] + mean * np.arange(len(time_s))
     if np.abs(even - time_s).max() < SAME_STEP * mean:
-        return np.zeros(len(step), dtype=np.int64), _discrete(own, (mean,))
+        return np.zeros(len(step), dtype=np.int64), _discretise(own, (mean,))
     _, first, number = np.unique(np.round(np.log(step) / SAME_STEP), return_index=True, return_inverse=True)
-    return number.ravel(), _discrete(own, tuple(step[first].tolist()))
+    return number.ravel(), _discretise(own, tuple(step[first].tolist()))
 
 
 @lru_cache(maxsize=64)
-def _discrete(own: Filter, steps: tuple[float, ...]) -> Recurrences:
-    """A, the gains of the sample before and of this one for each step, c and d of _march, by exponentials of matrices.
+def _discretise(own: Filter, steps: tuple[float, ...]) -> Recurrences:
+    """A, the gains of the sample before and of this one for each step, c and d of _recur, by exponentials of matrices.
 
     Time is counted in units of the corner, so that no coefficient of a high order is out of range.
     """
@@ -103,8 +103,8 @@ def _discrete(own: Filter, steps: tuple[float, ...]) -> Recurrences:
 
 
 @lru_cache(maxsize=64)
-def _largest_gain(own: Filter) -> float:
-    """Of a filter whose corner is one radian per second.
+def _unit_gain(own: Filter) -> float:
+    """Integral of |impulse response| of a filter whose corner is one radian per second.
 
     A high-pass of order n has, besides its direct passage, the impulse response of its state space.
     """
@@ -117,7 +117,7 @@ def _largest_gain(own: Filter) -> float:
 
 
 @nb.njit(cache=True)
-def _march(number: Ints, a: Floats, first: Floats, second: Floats, c: Floats, d: float, given: Floats) -> Floats:
+def _recur(number: Ints, a: Floats, first: Floats, second: Floats, c: Floats, d: float, given: Floats) -> Floats:
     """x <- A x + first v_n + second v_(n+1) from x = 0, with the A and gains of each step; y = c x + d v."""
     order = len(c)
     state, new = np.zeros(order), np.zeros(order)

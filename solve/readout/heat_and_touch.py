@@ -18,7 +18,7 @@ class Pyroelectric(Added):
 
     @property
     def is_off(self) -> bool:
-        """No warming."""
+        """Whether the film does not warm."""
         return self.temperature_step_K == 0.0
 
     def warming_K(self, time_s: Floats) -> Floats:
@@ -26,7 +26,7 @@ class Pyroelectric(Added):
         return np.asarray(-self.temperature_step_K * np.expm1(-np.maximum(time_s, 0.0) / self.time_constant_s))
 
     def charge_C(self, film: TouchedFilm) -> Floats:
-        """p A dT (t, e)."""
+        """Charge p A dT (t, e) in C."""
         return np.asarray(1e-6 * film.pyroelectric_uC_per_m2_K * self.warming_K(film.time_s)[:, None] * film.area_m2)
 
 
@@ -41,10 +41,10 @@ class ContactCharge(Added):
 
     @property
     def is_off(self) -> bool:
-        """No charge."""
+        """Whether the dot leaves no charge."""
         return self.charge_pC == 0.0
 
     def charge_C(self, film: TouchedFilm) -> Floats:
-        """Charge (t, e)."""
+        """Charge (t, e) in C."""
         share = film.area_m2 / film.area_m2.sum()
         return np.asarray(1e-12 * self.charge_pC * (film.touched**self.area_exponent)[:, None] * share)

@@ -22,19 +22,19 @@ from solve.result import PressResult, Trace
 from solve.solution.schedule import corners_s, duration_s, first_time_s, fraction, slide_s, stretches_s
 from solve.waveform import Waveform
 
-FASTER = 2.0
+CORNER_RATE_RATIO = 2.0
 """Ratio of two rates of loading from which relaxing stress has a corner between them that counts."""
-FAST = 0.3
+CORNER_RATE_SHARE = 0.3
 """Of the fastest rate: below it no change counts, such as near the top of a sampled sine."""
 ROUND_OFF = 1e-9
-BENT = 0.1
+EVEN_TOUCH_GROWTH = 0.1
 Coordinate = Callable[[Floats], Floats]
 Interpolation = Callable[[Floats, Floats], Coordinate]
 
 
 @dataclass(frozen=True)
 class PressLeg:
-    """From begin_s to end_s; along(time) : its coordinate, which grows or falls from end to end.
+    """A stretch of a press from begin_s to end_s; along(time) : its coordinate, which grows or falls from end to end.
 
     at (s,) : the coordinates of its states; known (s, k) : what is known there, its second column the force.
     through : the curves through them.
@@ -45,49 +45,52 @@ class PressLeg:
     along: Coordinate
     at: Floats
     known: Floats
-    through: "Interpolation" = field(default_factory=lambda: cubic)
+    through: "Interpolation" = field(default_factory=lambda: cubic_curve)
 
-    def straight(self) -> "PressLeg":
-        """With straight lines between its states; between two only, a parabola from the first."""
+    def with_straight_lines(self) -> "PressLeg":
+        """The leg with straight lines between its states; between two only, a parabola from the first."""
         if len(self.at) != 2:
-            return replace(self, through=lines)
+            return replace(self, through=straight_curve)
         middle, quarter = 0.5 * (self.at[0] + self.at[1]), 0.75 * self.known[0] + 0.25 * self.known[1]
         known = np.vstack([self.known[0], quarter, self.known[1]])
         return replace(self, at=np.array([self.at[0], middle, self.at[1]]), known=known)
 
-    def touched_softly(self) -> "PressLeg":
-        """Without slope at an end without force, as far as it bends there: as a round dot touches, and no flat one."""
-        at, known = _mirrored(self.at, self.known)
-        at, known = _mirrored(at[::-1], known[::-1])
+    def with_soft_touch(self) -> "PressLeg":
+        """The leg without slope at an end without force, as far as it bends there: so a round dot touches, and no flat
+        one.
+        """
+        at, known = _with_touch_image(self.at, self.known)
+        at, known = _with_touch_image(at[::-1], known[::-1])
         return replace(self, at=at[::-1], known=known[::-1])
 
     @cached_property
     def curve(self) -> Coordinate:
-        """Values (n, k) at coordinates (n,)."""
+        """Function from coordinates (n,) of the leg to values (n, k)."""
         return self.through(self.at, self.known)
 
-    def of(self, time_s: Floats) -> Floats:
+    def values_at(self, time_s: Floats) -> Floats:
         """Values (n, k) at times (n,) of this leg."""
         low, high = min(self.at[0], self.at[-1]), max(self.at[0], self.at[-1])
         return self.curve(np.clip(self.along(time_s), low, high))
 
 
-def _mirrored(at: Floats, known: Floats) -> tuple[Floats, Floats]:
-    """States (s,) and (s, k), and before them, where they begin without force, the image of the second in the first.
+def _with_touch_image(at: Floats, known: Floats) -> tuple[Floats, Floats]:
+    """States (s,) and (s, k), with the image of the second in the first before them, where they begin without force.
 
-    What grows evenly has an odd image, what grows by BENT more or less from the second to the third an even one.
+    What grows evenly has an odd image; what grows by EVEN_TOUCH_GROWTH more or less from the second to the third has an
+    even one.
     """
     if len(at) < 2 or known[0, 1] != 0.0:
         return at, known
     first, even = known[1] - known[0], np.ones(known.shape[1])
     if len(at) > 2:
         more = (known[2] - known[1]) * (at[1] - at[0]) / (at[2] - at[1]) / np.where(first == 0.0, 1.0, first) - 1.0
-        even = np.minimum(np.abs(more) / BENT, 1.0)
+        even = np.minimum(np.abs(more) / EVEN_TOUCH_GROWTH, 1.0)
     image = known[0] + (2.0 * even - 1.0) * first
     return np.append(2.0 * at[0] - at[1], at), np.vstack([image, known])
 
 
-def _rising(at: Floats, known: Floats) -> tuple[Floats, Floats]:
+def _in_rising_order(at: Floats, known: Floats) -> tuple[Floats, Floats]:
     """States (s,) and (s, k) in rising order, none of them twice."""
     if at[-1] < at[0]:
         at, known = at[::-1], known[::-1]
@@ -95,15 +98,15 @@ def _rising(at: Floats, known: Floats) -> tuple[Floats, Floats]:
     return at[fresh], known[fresh]
 
 
-def lines(at: Floats, known: Floats) -> Coordinate:
+def straight_curve(at: Floats, known: Floats) -> Coordinate:
     """Straight lines through what is known (s, k) at rising or falling (s,): values (n, k) at places (n,)."""
-    at, known = _rising(at, known)
+    at, known = _in_rising_order(at, known)
     return lambda where: np.column_stack([np.interp(where, at, column) for column in known.T])
 
 
-def cubic(at: Floats, known: Floats) -> Coordinate:
+def cubic_curve(at: Floats, known: Floats) -> Coordinate:
     """The cubic curve through what is known (s, k) at rising or falling (s,): values (n, k) at places (n,)."""
-    at, known = _rising(at, known)
+    at, known = _in_rising_order(at, known)
     if len(at) == 1:
         return lambda where: np.repeat(known, len(where), axis=0)
     slopes = np.gradient(known, at, axis=0, edge_order=2 if len(at) > 2 else 1)
@@ -114,27 +117,28 @@ def cubic(at: Floats, known: Floats) -> Coordinate:
     return lambda where: np.asarray(curve(where))
 
 
-def legs_of(result: PressResult, press: Press) -> list[PressLeg]:
+def press_legs(result: PressResult, press: Press) -> list[PressLeg]:
     """The legs of a press as far as it went; known : depth in m, force in N and charges in C, (s, 2 + e)."""
     if result.follows_time or len(result.trace.time_s) == 1:
-        return legs_through(result.trace, press)
-    return _by_load(result.progress, press, press.waveform or Waveform(), _known(result.trace))
+        return timed_legs(result.trace, press)
+    return _untimed_legs(result.progress, press, press.waveform or Waveform(), _signals(result.trace))
 
 
-def legs_through(trace: Trace, press: Press) -> list[PressLeg]:
-    """Of a press that followed its waveform: between the corners at which its rate turns or changes much."""
-    known, begin = _known(trace), float(trace.time_s[0])
+def timed_legs(trace: Trace, press: Press) -> list[PressLeg]:
+    """Legs of a press that followed its waveform: between the corners at which its rate turns or changes much."""
+    known, begin = _signals(trace), float(trace.time_s[0])
     if len(known) == 1:
         return [PressLeg(begin, begin, lambda time: time, np.array([begin]), known)]
-    return _through_time(trace.time_s, press, press.waveform or Waveform(), known)
+    return _legs_between_turns(trace.time_s, press, press.waveform or Waveform(), known)
 
 
-def _known(trace: Trace) -> Floats:
+def _signals(trace: Trace) -> Floats:
+    """Depth in m, force in N and charges in C of every state, (s, 2 + e)."""
     return np.column_stack([trace.indentation_m, trace.reaction_force_N, trace.film_charge_C])
 
 
-def _by_load(done: Floats, press: Press, waveform: Waveform, known: Floats) -> list[PressLeg]:
-    """Where time does not matter: the waveform passes the states of the way in, up and down; then it slides.
+def _untimed_legs(done: Floats, press: Press, waveform: Waveform, known: Floats) -> list[PressLeg]:
+    """Legs where time does not matter: the waveform passes the states of the way in, up and down; then it slides.
 
     done : (t,) progress of the states as in PressResult.
     """
@@ -154,7 +158,8 @@ def _by_load(done: Floats, press: Press, waveform: Waveform, known: Floats) -> l
     return legs
 
 
-def _through_time(time_s: Floats, press: Press, waveform: Waveform, known: Floats) -> list[PressLeg]:
+def _legs_between_turns(time_s: Floats, press: Press, waveform: Waveform, known: Floats) -> list[PressLeg]:
+    """Legs between the turns of the waveform and the waypoints of a slide, with the states of each."""
     edges = np.union1d(_turns_s(waveform), slide_s(press)) if press.path_xy_mm else _turns_s(waveform)
     begin, end = time_s[0], time_s[-1]
     apart = np.diff(edges, prepend=-np.inf) > ROUND_OFF * (end - begin)
@@ -177,5 +182,6 @@ def _turns_s(waveform: Waveform) -> Floats:
     rate = np.diff(fraction(waveform, corners)) / np.diff(corners)
     before, after = rate[:-1], rate[1:]
     fast, slow = np.maximum(np.abs(before), np.abs(after)), np.minimum(np.abs(before), np.abs(after))
-    turns = (before * after <= 0.0) & (fast > 0.0) | (fast > FASTER * slow) & (fast > FAST * fast.max(initial=0.0))
+    changes = (fast > CORNER_RATE_RATIO * slow) & (fast > CORNER_RATE_SHARE * fast.max(initial=0.0))
+    turns = (before * after <= 0.0) & (fast > 0.0) | changes
     return np.asarray(corners[np.concatenate([[True], turns, [True]])])

@@ -21,11 +21,11 @@ class Stage(Protocol):
 
     place: ClassVar[int]
 
-    def applied(self, time_s: Floats, voltage_V: Floats) -> Floats:
-        """Voltage (t,) behind it at times (t,)."""
+    def apply(self, time_s: Floats, voltage_V: Floats) -> Floats:
+        """Voltage (t,) behind the stage, of the voltage (t,) before it at times (t,)."""
 
     def largest_gain(self) -> float:
-        """By how much it can enlarge the largest error of the voltage before it."""
+        """Factor by which the stage can at most enlarge an error of the voltage before it."""
 
 
 @dataclass(frozen=True)
@@ -36,25 +36,25 @@ class Hum:
     amplitude_V: float
     place: ClassVar[int] = INPUT
 
-    def applied(self, time_s: Floats, voltage_V: Floats) -> Floats:
-        """Voltage (t,) with the sine."""
+    def apply(self, time_s: Floats, voltage_V: Floats) -> Floats:
+        """Add the sine to a voltage (t,)."""
         return np.asarray(voltage_V + self.amplitude_V * np.sin(2.0 * np.pi * self.frequency_Hz * time_s))
 
     def largest_gain(self) -> float:
-        """An error passes unchanged."""
+        """One: an error passes unchanged."""
         return 1.0
 
 
 @dataclass(frozen=True)
 class Saturation:
-    """limit_V : what is never exceeded. sharpness : p of the knee, infinite for none."""
+    """A limit of the voltage. limit_V : never exceeded. sharpness : p of the knee, infinite for none."""
 
     limit_V: float
     sharpness: float = np.inf
     place: ClassVar[int] = LIMIT
 
-    def applied(self, time_s: Floats, voltage_V: Floats) -> Floats:
-        """Voltage (t,) behind it, whatever the times."""
+    def apply(self, time_s: Floats, voltage_V: Floats) -> Floats:
+        """Limit a voltage (t,), whatever the times."""
         hard = np.clip(voltage_V, -self.limit_V, self.limit_V)
         if np.isinf(self.sharpness):
             return np.asarray(hard)
@@ -63,5 +63,5 @@ class Saturation:
         return np.asarray(hard * (1.0 + inside**self.sharpness) ** (-1.0 / self.sharpness))
 
     def largest_gain(self) -> float:
-        """It enlarges nothing."""
+        """One: a limit enlarges no error."""
         return 1.0

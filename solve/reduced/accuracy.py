@@ -20,10 +20,10 @@ from solve.result import Trace
 from solve.solution.errors import NoEquilibriumError
 from solve.waveform import Waveform
 
-BETWEEN = 20  # samples of the reduced model to each time step of the 3D model
+SAMPLES_A_STEP = 20  # samples of the reduced model to each time step of the 3D model
 
 
-def measured(
+def measure_accuracy(
     model: ReducedModel,
     segment: Segment,
     materials: Mapping[str, Material],
@@ -31,9 +31,9 @@ def measured(
     tet_mesh: TetMesh,
     physics: Physics,
 ) -> Accuracy:
-    """Largest errors over the presses kept out. NoEquilibriumError where one of these has no answer."""
+    """Largest errors over presses kept out of the fit. NoEquilibriumError where one of these has no answer."""
     found = []
-    for waveform, depth, share in _held_out(bool(model.relaxing)):
+    for waveform, depth, share in _validation_presses(bool(model.relaxing)):
         inelastic = {layer: (Prony((share * most,), (waveform.rise_s,)),) for layer, most in model.relaxing.items()}
         tested = replace(physics.structure, inelastic=inelastic)
         press = Press(indentation_mm=depth * model.depth_mm, load_steps=8, waveform=waveform)
@@ -44,8 +44,10 @@ def measured(
     return Accuracy(*(max(getattr(a, f.name) for a in found) for f in fields(Accuracy)))
 
 
-def _held_out(relaxes: bool) -> list[tuple[Waveform, float, float]]:
-    """Waveform, share of the depth, share of the largest relaxation; all relaxation times are that of the rise."""
+def _validation_presses(relaxes: bool) -> list[tuple[Waveform, float, float]]:
+    """Waveform, share of the depth and share of the largest relaxation of presses kept out of the fit; all relaxation
+    times are that of the rise.
+    """
     if not relaxes:
         return [(Waveform(shape="ramp", rise_s=0.1), 0.97, 0.0)]
     hold = Waveform(shape="trapezoid", rise_s=0.1, hold_s=0.3, fall_s=0.1)
@@ -54,10 +56,10 @@ def _held_out(relaxes: bool) -> list[tuple[Waveform, float, float]]:
 
 def compare(model: ReducedModel, trace: Trace, physics: Physics) -> Accuracy:
     """Errors at the times of a 3D press, whose own depth is given to the reduced model."""
-    time = refined(trace.time_s)
+    time = with_samples_between(trace.time_s)
     depth = 1e3 * np.interp(time, trace.time_s, trace.indentation_m)
     answer = model.respond(time, depth, physics)
-    force, charge = answer.force_N[::BETWEEN], answer.electrode_charge_C[::BETWEEN].sum(axis=1)
+    force, charge = answer.force_N[::SAMPLES_A_STEP], answer.electrode_charge_C[::SAMPLES_A_STEP].sum(axis=1)
     wanted = trace.film_charge_C.sum(axis=1)
     rate, wanted_rate = np.diff(charge) / np.diff(trace.time_s), np.diff(wanted) / np.diff(trace.time_s)
     return Accuracy(
@@ -67,9 +69,9 @@ def compare(model: ReducedModel, trace: Trace, physics: Physics) -> Accuracy:
     )
 
 
-def refined(time: Floats) -> Floats:
-    """Times with BETWEEN even parts in every interval, the given ones at every BETWEEN-th place."""
-    places = np.arange((len(time) - 1) * BETWEEN + 1) / BETWEEN
+def with_samples_between(time: Floats) -> Floats:
+    """Times with SAMPLES_A_STEP even parts in every interval, the given ones at every such place."""
+    places = np.arange((len(time) - 1) * SAMPLES_A_STEP + 1) / SAMPLES_A_STEP
     return np.asarray(np.interp(places, np.arange(len(time)), time))
 
 

@@ -19,17 +19,17 @@ from mesh.types import TetMesh
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Model, Press
 from solve.physics import Physics
-from solve.reduced.accuracy import measured
-from solve.reduced.cache import key, remembered
+from solve.reduced.accuracy import measure_accuracy
+from solve.reduced.cache import model_key, recall_or_make
 from solve.reduced.fit import FINER, fit
 from solve.reduced.frozen_memory import Frozen
-from solve.reduced.model import ReducedModel, structure
+from solve.reduced.model import ReducedModel, structure_key
 from solve.reduced.response import Accuracy
 from solve.reduced.rig import unknown_of_segment
 from solve.reduced.sampling import Sample, SampledPress, Sampler
 from solve.reduced.task import ReductionTask
 from solve.setup import discretise
-from solve.solution.similar_press import combined
+from solve.solution.similar_press import weighted_sum
 
 DEPTH_NODES = 16
 UNKNOWN = Accuracy(np.inf, np.inf, np.inf)
@@ -59,24 +59,24 @@ def build_reduced(
         segment, materials, dot, tet_mesh, depth_mm, dict(relaxing or {}), physics or Physics(), depth_nodes
     )
     if cache:
-        return reduced(asked, check)
-    _refuse(asked)
+        return recall_or_build(asked, check)
+    _refuse_unsupported(asked)
     return _build(asked, check)
 
 
-def reduced(asked: ReductionTask, check: bool = True) -> ReducedModel:
-    """As build_reduced, kept on disk."""
-    _refuse(asked)
-    return remembered(key(asked, check), lambda: _build(asked, check))
+def recall_or_build(asked: ReductionTask, check: bool = True) -> ReducedModel:
+    """The reduced model of a task from the disk, else as build_reduced makes it, which is then kept."""
+    _refuse_unsupported(asked)
+    return recall_or_make(model_key(asked, check), lambda: _build(asked, check))
 
 
-def keep_reduced(asked: ReductionTask, check: bool, made: ReducedModel) -> None:
-    """Keep on disk what was made elsewhere."""
-    remembered(key(asked, check), lambda: made)
+def keep_model(asked: ReductionTask, check: bool, made: ReducedModel) -> None:
+    """Keep on disk a model that was made elsewhere."""
+    recall_or_make(model_key(asked, check), lambda: made)
 
 
-def _refuse(case: ReductionTask) -> None:
-    """What the reduction does not describe."""
+def _refuse_unsupported(case: ReductionTask) -> None:
+    """ValueError for what the reduction does not describe."""
     film = case.materials["film"]
     if isinstance(film, PiezoelectricFilm) and film.coupling == "two-way":
         raise ValueError("coupling = 'two-way': the reduced model needs a film whose voltage does not act back")
@@ -103,12 +103,12 @@ def _build(case: ReductionTask, check: bool) -> ReducedModel:
     electrodes = np.column_stack([recorder.capacitance_F, area])
     model = ReducedModel(
         fit(samples, layers), case.depth_mm, case.relaxing, electrodes, film.pyroelectric_uC_per_m2_K,
-        structure(case.physics), UNKNOWN,
+        structure_key(case.physics), UNKNOWN,
     )  # fmt: skip
     if not check:
         return model
     told = (case.segment, case.materials, case.dot, case.tet_mesh, case.physics)
-    return replace(model, accuracy=measured(model, *told))
+    return replace(model, accuracy=measure_accuracy(model, *told))
 
 
 def _sampler(case: ReductionTask, layers: tuple[str, ...]) -> Sampler:
@@ -119,7 +119,7 @@ def _sampler(case: ReductionTask, layers: tuple[str, ...]) -> Sampler:
 
 
 def _samples(sampler: Sampler, relaxing: Mapping[str, float]) -> Iterator[Sample]:
-    """The elastic press first.
+    """Press the samples of a reduced model, the elastic press first.
 
     The memory of a long hold is the share times the elastic stress that goes with that memory: one step of the fixed
     point is taken.
@@ -134,10 +134,10 @@ def _samples(sampler: Sampler, relaxing: Mapping[str, float]) -> Iterator[Sample
         first = sampler.press({layer: share * fields[-1][layer]}, near=plain)
         memories[layer] = share * first.fields[-1][layer]
         held[layer] = sampler.press({layer: memories[layer]}, near=first.course)
-        halfway = combined((0.5, held[layer].course), (0.5, plain))
+        halfway = weighted_sum((0.5, held[layer].course), (0.5, plain))
         yield from (first.sample, held[layer].sample)
         for memory in (0.5 * memories[layer], share * fields[middle][layer]):
             yield sampler.press({layer: memory}, near=halfway).sample
     for one, other in combinations(relaxing, 2):  # to first order their answers add up
-        near = combined((1.0, held[one].course), (1.0, held[other].course), (-1.0, plain))
+        near = weighted_sum((1.0, held[one].course), (1.0, held[other].course), (-1.0, plain))
         yield sampler.press({one: memories[one], other: memories[other]}, near=near).sample

@@ -13,12 +13,12 @@ from solve.model import Readout
 from solve.physics import Physics, laws_of
 from solve.readout.amplifier import amplify, input_of, stages
 from solve.reduced.fit import CELLS, ResponseTable
-from solve.reduced.recording import branches, given, second_differences, sensed
+from solve.reduced.recording import branches, check_recording, second_differences, sensed
 from solve.reduced.response import Accuracy, ErrorBound, Raw, ReducedResponse
 from solve.reduced.rig import compliance_mm_per_N, mass_Ns2_per_mm, unknown_of_rig, unknown_of_segment
 from solve.reduced.time_stepping import BY_DEPTH, BY_FORCE, TOO_DEEP, follow
 
-MARGIN = 2.0  # of the bound over the largest error that was measured
+ERROR_MARGIN = 2.0  # of the bound over the largest error that was measured
 
 
 @dataclass(frozen=True)
@@ -55,8 +55,8 @@ class ReducedModel:
         ValueError with one sentence for what the samples do not cover.
         """
         physics, readout = physics or Physics(), readout or Readout()
-        self._refuse(physics)
-        time, drive, kind = given(time_s, depth_mm, force_N, gap_mm)
+        self._refuse_unsampled(physics)
+        time, drive, kind = check_recording(time_s, depth_mm, force_N, gap_mm)
         path, outputs = self._follow(time, drive, kind, physics)
         motion = Motion(drive, partial(np.gradient, drive, time), partial(second_differences, time, drive))
         force = sensed(drive, kind, path, outputs[:, 0], physics, motion)
@@ -68,10 +68,11 @@ class ReducedModel:
         bound = self._bound(Raw(time, path, outputs), wired, capacitance, readout, physics)
         return ReducedResponse(time, path + gap_mm, force, charge, each, voltage, bound)
 
-    def _refuse(self, physics: Physics) -> None:
+    def _refuse_unsampled(self, physics: Physics) -> None:
+        """ValueError for physics that the samples do not cover."""
         if unknown := unknown_of_segment(physics):
             raise ValueError(f"the reduced model has no {' and no '.join(unknown)}: that needs the full solver")
-        if structure(physics) != self.structure:
+        if structure_key(physics) != self.structure:
             other = "other bonds, delaminations, prestretch or elastic terms"
             raise ValueError(f"the reduced model was made with {other}: build it again")
         for name, series in laws_of(physics.inelastic, Prony).items():
@@ -82,6 +83,7 @@ class ReducedModel:
                 raise ValueError(f"{name} relaxes by {share:g} of its stress: the reduced model knows up to {known:g}")
 
     def _follow(self, time: Floats, drive: Floats, kind: int, physics: Physics) -> tuple[Floats, Floats]:
+        """Path of the dot (t,) and outputs (t, 2 + e) over time. ValueError where the dot goes too deep."""
         compliance = compliance_mm_per_N(physics)
         unknown = unknown_of_rig(physics) if kind == BY_FORCE or compliance > 0.0 else []
         if unknown:
@@ -100,23 +102,24 @@ class ReducedModel:
         return path, outputs
 
     def _bound(self, answer: Raw, wired: Floats, capacitance: float, readout: Readout, physics: Physics) -> ErrorBound:
-        """Of C V' = e' - V / R with an error e of the charge: |V| <= 2 max|e| / C and |V| <= R max|e'|.
+        """Bound of the error of an answer. With an error e of the charge in C V' = e' - V / R, |V| <= 2 max|e| / C and
+        |V| <= R max|e'|.
 
         Shallow and slow presses get the error that the model has at full depth. A stage behind the input multiplies
         by at most its largest gain.
         """
-        force, charge, rate = self._largest(answer, wired)
-        charge *= MARGIN * self.accuracy.charge
+        force, charge, rate = self._largest_signals(answer, wired)
+        charge *= ERROR_MARGIN * self.accuracy.charge
         capacitance, resistance = input_of(readout, capacitance)
         voltage = (1.0 if np.isinf(resistance) else 2.0) * charge / abs(capacitance)
         if np.isfinite(resistance):
-            voltage = min(voltage, abs(resistance) * MARGIN * self.accuracy.charge_rate * rate)
+            voltage = min(voltage, abs(resistance) * ERROR_MARGIN * self.accuracy.charge_rate * rate)
         for one in stages(readout, physics):
             voltage *= one.largest_gain()
-        return ErrorBound(MARGIN * self.accuracy.force * force, charge, voltage)
+        return ErrorBound(ERROR_MARGIN * self.accuracy.force * force, charge, voltage)
 
-    def _largest(self, answer: Raw, wired: Floats) -> tuple[float, float, float]:
-        """Force, charge at full depth without relaxation or in this answer, and the charge's rate."""
+    def _largest_signals(self, answer: Raw, wired: Floats) -> tuple[float, float, float]:
+        """Largest force, charge and rate of the charge, at full depth without relaxation or in this answer."""
         elastic = self.fit.table[:, 0]
         charge, known = answer.outputs[:, 2:] @ wired, elastic[:, 2 : 2 + len(wired)] @ wired
         slope = np.abs(np.diff(known)).max() * CELLS / self.depth_mm
@@ -126,7 +129,7 @@ class ReducedModel:
         return float(force), float(max(np.abs(known).max(), np.abs(charge).max())), float(rate)
 
 
-def structure(physics: Physics) -> str:
-    """What of the physics the samples contain."""
+def structure_key(physics: Physics) -> str:
+    """Text of the physics that the samples contain, by which models are told apart."""
     built_in = physics.structure
     return repr((sorted(built_in.bonds.items()), built_in.delaminations, built_in.prestretch, built_in.terms))

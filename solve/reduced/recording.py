@@ -12,7 +12,9 @@ from solve.reduced.rig import compliance_mm_per_N
 from solve.reduced.time_stepping import BY_DEPTH, BY_FORCE
 
 
-def given(time_s: Floats, depth_mm: Floats | None, force_N: Floats | None, gap_mm: float) -> tuple[Floats, Floats, int]:
+def check_recording(
+    time_s: Floats, depth_mm: Floats | None, force_N: Floats | None, gap_mm: float
+) -> tuple[Floats, Floats, int]:
     """Time (t,) in s, drive (t,) in mm from touch or in N, and its kind. ValueError for what is no recording."""
     if (depth_mm is None) == (force_N is None):
         raise ValueError("give either depth_mm or force_N")

@@ -7,7 +7,9 @@ from foundation.arrays import Floats
 
 @dataclass(frozen=True)
 class Raw:
-    """The dot's path from its nominal touch (t,), and force, contact area and charges (t, 2 + e)."""
+    """Answer before the amplifier: the dot's path from its nominal touch (t,); force, contact area and charges (t, 2 +
+    e).
+    """
 
     time_s: Floats
     path_mm: Floats
@@ -28,7 +30,7 @@ class Accuracy:
 
 @dataclass(frozen=True)
 class ErrorBound:
-    """What the answer may be off by at any time: a margin over what was measured on the presses kept out of the fit."""
+    """Largest error of an answer at any time: a margin over what was measured on the presses kept out of the fit."""
 
     force_N: float
     charge_C: float

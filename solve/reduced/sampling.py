@@ -76,11 +76,11 @@ class Sampler:
     def press(self, memory: Fields, finer: int = 1, near: Course | None = None) -> SampledPress:
         """Press with overstress fields. NoEquilibriumError.
 
-        finer : so many depth nodes to one. near : a similar press, to start from.
+        finer : factor of the number of depth nodes. near : a similar press, to start from.
         """
-        state, touch = self._free(memory)
+        state, touch = self._lifted_state(memory)
         full, shares = self.setup.full_drive, depth_shares(finer * self.nodes)
-        past, outputs, fields, found = [state], [self._outputs(state)], [self._elastic(state)], [(0.0, state.x)]
+        past, outputs, fields, found = [state], [self._outputs(state)], [self._elastic_fields(state)], [(0.0, state.x)]
         for share in shares[1:]:
             drive = float(touch + share * (full - touch))
             target = Target(past[-1].time + 1.0, Load((0.0, 0.0), drive), False)
@@ -89,7 +89,7 @@ class Sampler:
             if failure is not None:
                 raise NoEquilibriumError(f"a press for the reduced model stopped: {failure}", past[-1].x, None)
             outputs.append(self._outputs(past[-1]))
-            fields.append(self._elastic(past[-1]))
+            fields.append(self._elastic_fields(past[-1]))
             found.append((share, past[-1].x))
         if self.metric is None:
             self.metric = StressMetric(self.system, past[-1], self.terms)
@@ -100,15 +100,15 @@ class Sampler:
         sample = Sample(1e3 * self.system.units.length * touch, np.array(outputs), stress, remembered)
         return SampledPress(sample, fields, Course.of(found))
 
-    def _free(self, memory: Fields) -> tuple[State, float]:
-        """The segment clear of the dot, and the approach at which they touch."""
+    def _lifted_state(self, memory: Fields) -> tuple[State, float]:
+        """The segment clear of the dot, with these memories, and the approach at which they touch."""
         pairs = zip(self.system.terms, self.rest.histories, strict=True)
         histories = tuple(self._remember(term, history, memory) for term, history in pairs)
         full = self.setup.full_drive
         lifted = Load((0.0, 0.0), -full)
         start = replace(self.rest, load=lifted, histories=histories, force_scale=self.force_scale, time=-1.0)
         state = equilibrate(self.system, self.linear, start.x, lifted, 0.0, start) if memory else start
-        touch = float(brentq(lambda drive: self._gap(state, drive), -full, full, xtol=1e-12))
+        touch = float(brentq(lambda drive: self._smallest_gap(state, drive), -full, full, xtol=1e-12))
         return replace(state, load=Load((0.0, 0.0), touch), time=0.0), touch
 
     def _remember(self, term: Term, history: History, memory: Fields) -> History:
@@ -116,21 +116,23 @@ class Sampler:
         name = next((name for name, own in self.terms.items() if own is term), None)
         if name is None:
             return history
-        elastic = self._elastic(self.rest)[name]
+        elastic = self._elastic_fields(self.rest)[name]
         return ((elastic, memory.get(name, np.zeros_like(elastic))),)
 
-    def _gap(self, state: State, drive: float) -> float:
+    def _smallest_gap(self, state: State, drive: float) -> float:
         """Smallest distance, a mean over a node's surroundings, to the dot at an approach."""
         contact = self.system.contact
         gap = contact.weighted_gap(self.system.displacement(state.x), np.array([0.0, 0.0, -drive]))
         return float((gap / contact.nodal_area).min())
 
     def _outputs(self, state: State) -> Floats:
+        """Force in N, contact area in m2 and charges in C of a state, (2 + e,)."""
         self.recorder.record(state, state)
         record = self.recorder.records.pop()
         return np.array([record.contact_force_N[2], record.contact_area_m2, *record.film_charge_C])
 
-    def _elastic(self, state: State) -> Fields:
+    def _elastic_fields(self, state: State) -> Fields:
+        """Layer -> elastic stress at its quadrature points in a state."""
         histories = {name: self.system.history_of(term, state) for name, term in self.terms.items()}
         return {name: memories[0][0] for name, memories in histories.items()}
 

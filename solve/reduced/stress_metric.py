@@ -10,7 +10,7 @@ from solve.solution.linear import LinearSolver
 from solve.system import State, System
 from solve.terms.base import Term
 
-ACCURATE = 1e-8
+LINEAR_TOLERANCE = 1e-8
 
 
 class StressMetric:
@@ -44,6 +44,6 @@ class StressMetric:
     def _answer(self, load: Floats) -> Floats:
         if not load.any():
             return load
-        answer = self.linear.solve(self.tangent, load, ACCURATE, similar=self._factorised)
+        answer = self.linear.solve(self.tangent, load, LINEAR_TOLERANCE, similar=self._factorised)
         self._factorised = True
         return answer

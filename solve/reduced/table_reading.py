@@ -4,13 +4,13 @@ import numba as nb
 
 from foundation.arrays import Floats, Ints
 
-STEPS = 60  # of the search for a depth
-CLOSE = 1e-12  # of the full depth
+MOST_BALANCE_STEPS = 60  # of the search for a depth
+DEPTH_TOLERANCE = 1e-12  # of the full depth
 
 
 @nb.njit(cache=True, error_model="numpy")
 def set_features(alpha: Floats, pairs: Ints, features: Floats) -> None:
-    """(1, alpha, products of pairs of alpha)."""
+    """Write the features: 1, alpha, and products of pairs of alpha."""
     count = len(alpha)
     features[0] = 1.0
     for r in range(count):
@@ -21,7 +21,7 @@ def set_features(alpha: Floats, pairs: Ints, features: Floats) -> None:
 
 @nb.njit(cache=True, error_model="numpy")
 def first_touch(touch: Floats, features: Floats) -> float:
-    """Depth at which the dot touches."""
+    """Depth at which the dot touches, with these features (f,) of the memory."""
     depth = 0.0
     for f in range(len(features)):
         depth += touch[f] * features[f]
@@ -29,8 +29,8 @@ def first_touch(touch: Floats, features: Floats) -> float:
 
 
 @nb.njit(cache=True, error_model="numpy")
-def read(table: Floats, features: Floats, touch: float, full: float, depth: float, outputs: Floats) -> None:
-    """All outputs at a depth; below touch those of the free segment."""
+def read_outputs(table: Floats, features: Floats, touch: float, full: float, depth: float, outputs: Floats) -> None:
+    """Write all outputs (o,) at a depth; below touch those of the free segment."""
     cells = len(table) - 1
     at = max(0.0, (depth - touch) / (full - touch)) * cells
     cell = min(int(at), cells - 1)
@@ -66,7 +66,7 @@ def balance(
         return push / spring if spring > 0.0 else touch
     low, high = touch, 2.0 * full - touch  # the last cell goes on, so that the caller sees what is too deep
     depth = min(max(guess, low), high)
-    for _ in range(STEPS):
+    for _ in range(MOST_BALANCE_STEPS):
         force, slope = force_and_slope(table, features, touch, full, depth)
         excess = force + spring * depth - push
         if excess > 0.0:
@@ -74,7 +74,7 @@ def balance(
         else:
             low = depth
         step = -excess / max(slope + spring, 1e-300)
-        if abs(step) <= CLOSE * full or high - low <= CLOSE * full:
+        if abs(step) <= DEPTH_TOLERANCE * full or high - low <= DEPTH_TOLERANCE * full:
             break
         depth += step
         if not low < depth < high:

@@ -15,20 +15,20 @@ import numpy as np
 from foundation.arrays import Floats, Ints
 from solve.decay import mean_decay
 from solve.materials.prony import branch_stress
-from solve.reduced.table_reading import balance, first_touch, force_and_slope, read, set_features
+from solve.reduced.table_reading import balance, first_touch, force_and_slope, read_outputs, set_features
 
 BY_DEPTH, BY_FORCE = 0, 1
 FINE, TOO_DEEP = 0, 1
-TOLERANCE = 1e-10  # of the amplitudes
-ROUNDS = 60
-PHASE = 0.25  # of the rig's fastest oscillation in one sub-step; central differences are stable up to 2
-MOST_PARTS = 1000
+AMPLITUDE_TOLERANCE = 1e-10  # of the amplitudes
+MOST_FIXED_POINT_ROUNDS = 60
+SUBSTEP_PHASE = 0.25  # of the rig's fastest oscillation in one sub-step; central differences are stable up to 2
+MOST_SUBSTEPS = 1000
 
 
 @nb.njit(cache=True, error_model="numpy")
 def _decay(step: float, moduli: Floats, times: Floats, layer: Ints, start: Ints, fade: Floats, gain: Floats,
            instant: Floats) -> None:  # fmt: skip
-    """exp(-a) and g (1 - exp(-a)) / a of each branch, and sum g - g (1 - exp(-a)) / a of each amplitude."""
+    """Write exp(-a) and g (1 - exp(-a)) / a of each branch, and sum g - g (1 - exp(-a)) / a of each amplitude."""
     instant[:] = 0.0
     for b in range(len(moduli)):
         a = step / times[b]
@@ -39,8 +39,10 @@ def _decay(step: float, moduli: Floats, times: Floats, layer: Ints, start: Ints,
 
 
 @nb.njit(cache=True, error_model="numpy")
-def _known(layer: Ints, start: Ints, fade: Floats, gain: Floats, memory: Floats, old: Floats, known: Floats) -> None:
-    """The part of alpha that does not depend on the new amplitudes."""
+def _explicit_part(
+    layer: Ints, start: Ints, fade: Floats, gain: Floats, memory: Floats, old: Floats, known: Floats
+) -> None:
+    """Write the part of alpha that does not depend on the new amplitudes."""
     known[:] = 0.0
     for b in range(len(layer)):
         for r in range(start[layer[b]], start[layer[b] + 1]):
@@ -68,19 +70,19 @@ def _settle(
     depth, contraction = guess, 0.0
     for r in range(len(alpha)):
         contraction = max(contraction, 2.0 * instant[r])
-    for _ in range(ROUNDS):
+    for _ in range(MOST_FIXED_POINT_ROUNDS):
         set_features(alpha, pairs, features)
         first = first_touch(touch, features)
         if spring >= 0.0:
             depth = balance(table, features, first, full, spring, push, depth)
-        read(table, features, first, full, depth, values)
+        read_outputs(table, features, first, full, depth, values)
         change, size = 0.0, 0.0
         for r in range(len(alpha)):
             new = instant[r] * values[observed + r] + known[r]
             change = max(change, abs(new - alpha[r]))
             size = max(size, abs(values[observed + r]))
             alpha[r] = new
-        if contraction * change <= TOLERANCE * size:
+        if contraction * change <= AMPLITUDE_TOLERANCE * size:
             break
     return depth
 
@@ -124,7 +126,7 @@ def follow(
     spring = 1.0 / compliance if kind == BY_DEPTH and not ruled else 0.0
     push = spring * drive if kind == BY_DEPTH else drive  # on the mass
     set_features(alpha, pairs, features)
-    read(table, features, touch[0], full, touch[0], values)
+    read_outputs(table, features, touch[0], full, touch[0], values)
     old[:] = values[observed:]
     stiffness = spring + abs(force_and_slope(table, features, touch[0], full, full)[1])
     motion, last = np.zeros(3), -1.0
@@ -133,16 +135,16 @@ def follow(
         if abs(span - last) > 1e-9 * span:
             _decay(span, moduli, times, layer, start, fade, gain, instant)
             last = span
-        _known(layer, start, fade, gain, memory, old, known)
-        parts = 0 if ruled or mass == 0.0 or span == 0.0 else 1 + int(span * np.sqrt(stiffness / mass) / PHASE)
-        if 0 < parts <= MOST_PARTS:
+        _explicit_part(layer, start, fade, gain, memory, old, known)
+        parts = 0 if ruled or mass == 0.0 or span == 0.0 else 1 + int(span * np.sqrt(stiffness / mass) / SUBSTEP_PHASE)
+        if 0 < parts <= MOST_SUBSTEPS:
             set_features(alpha + 0.5 * (alpha - last_alpha), pairs, features)
             _swing(motion, parts, span / parts, mass, spring, push[n - 1], push[n], table, touch, full, features)
         for r in range(modes):  # goes on as it went
             here = alpha[r]
             alpha[r] += here - last_alpha[r]
             last_alpha[r] = here
-        if ruled or 0 < parts <= MOST_PARTS:
+        if ruled or 0 < parts <= MOST_SUBSTEPS:
             asked = drive[n] if ruled else motion[0]
             motion[0] = _settle(table, touch, full, pairs, features, alpha, instant, known, -1.0, 0.0, asked, observed,
                                 values)  # fmt: skip

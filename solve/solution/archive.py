@@ -15,25 +15,25 @@ from foundation.cache import read_arrays, write_arrays
 def write_archive(path: Path, content: Any) -> None:
     """Write the file whole. TypeError for what is neither dataclass, list, tuple, array, number, text nor None."""
     arrays: list[Floats] = []
-    tree = _encoded(content, arrays)
+    tree = _encode(content, arrays)
     named = {f"a{n}": array for n, array in enumerate(arrays)}
     write_arrays(path, {"tree": np.array(json.dumps(tree)), **named})
 
 
 def read_archive(path: Path, types: Mapping[str, type]) -> Any:
-    """What was written, None when there is no file or it is damaged; types : dataclasses by name."""
-    return read_arrays(path, lambda data: _decoded(json.loads(str(data["tree"])), data, types))
+    """Content of a file of write_archive, None when there is none or it is damaged; types : dataclasses by name."""
+    return read_arrays(path, lambda data: _decode(json.loads(str(data["tree"])), data, types))
 
 
-def _encoded(value: Any, arrays: list[Floats]) -> Any:
+def _encode(value: Any, arrays: list[Floats]) -> Any:
     if isinstance(value, np.ndarray):
         arrays.append(value)
         return {"array": len(arrays) - 1}
     if is_dataclass(value) and not isinstance(value, type):
-        inner = {field.name: _encoded(getattr(value, field.name), arrays) for field in fields(value)}
+        inner = {field.name: _encode(getattr(value, field.name), arrays) for field in fields(value)}
         return {"type": type(value).__name__, "fields": inner}
     if isinstance(value, list | tuple):
-        return {type(value).__name__: [_encoded(item, arrays) for item in value]}
+        return {type(value).__name__: [_encode(item, arrays) for item in value]}
     if value is None or isinstance(value, bool | int | float | str):
         return value
     if isinstance(value, np.generic):
@@ -41,14 +41,14 @@ def _encoded(value: Any, arrays: list[Floats]) -> Any:
     raise TypeError(f"an archive holds no {type(value).__name__}")
 
 
-def _decoded(tree: Any, data: Any, types: Mapping[str, type]) -> Any:
+def _decode(tree: Any, data: Any, types: Mapping[str, type]) -> Any:
     if not isinstance(tree, dict):
         return tree
     if "array" in tree:
         return data[f"a{tree['array']}"]
     if "type" in tree:
-        inner = {name: _decoded(value, data, types) for name, value in tree["fields"].items()}
+        inner = {name: _decode(value, data, types) for name, value in tree["fields"].items()}
         return types[tree["type"]](**inner)
     ((kind, items),) = tree.items()
-    decoded = [_decoded(item, data, types) for item in items]
+    decoded = [_decode(item, data, types) for item in items]
     return tuple(decoded) if kind == "tuple" else decoded

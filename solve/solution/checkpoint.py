@@ -10,7 +10,7 @@ from solve.result import Fields, Record, Step
 from solve.solution.archive import read_archive, write_archive
 from solve.system import Load, State
 
-EVERY_S = 15.0  # between two writings; a short press writes none
+WRITE_EVERY_S = 15.0  # between two writings; a short press writes none
 TYPES = {kind.__name__: kind for kind in (State, Load, Step, Fields, Record)}
 
 
@@ -39,7 +39,7 @@ class Checkpoint:
 
         A disk that cannot be written is no fault of the press.
         """
-        if time.monotonic() - self.written < EVERY_S:
+        if time.monotonic() - self.written < WRITE_EVERY_S:
             return False
         try:
             write_archive(self.path, [self.key, past, recorder.memory()])
@@ -49,6 +49,6 @@ class Checkpoint:
         return True
 
     def discard(self) -> None:
-        """The press has ended."""
+        """Remove the file, as the press has ended."""
         with suppress(OSError):  # a file that stays is found to be of no use by its key
             self.path.unlink(missing_ok=True)

@@ -18,16 +18,16 @@ from solve.terms.solid import InvertedElementError
 
 MAX_STEPS = 150
 FIRST_DAMPING = 0.1  # of the median stiffness of a displacement
-FASTER, SLOWER = 0.3, 3.0  # how far the damping may fall or grow from step to step
-PATIENCE = 60  # steps in which the unbalanced forces must fall once by a tenth below the least so far
+LEAST_DAMPING_RATIO, MOST_DAMPING_RATIO = 0.3, 3.0  # how far the damping may fall or grow from step to step
+MOST_IDLE_STEPS = 60  # steps in which the unbalanced forces must fall once by a tenth below the least so far
 MAX_REFUSED = 20  # steps that turn an element inside out, one after the other: it holds whatever the damping
-NEAR = 1e-5  # relative residual from which Newton goes on alone
+NEWTON_RESIDUAL = 1e-5  # relative residual from which Newton goes on alone
 LINEAR_TOLERANCE = 1e-6
 TINY = 1e-300
 
 
-def snapped(system: System, linear: LinearSolver, load: Load, time: float, previous: State) -> State:
-    """The equilibrium that the segment falls into from its last one. NoEquilibriumError where it finds none."""
+def snap(system: System, linear: LinearSolver, load: Load, time: float, previous: State) -> State:
+    """Find the equilibrium that the segment falls into from its last one. NoEquilibriumError where it finds none."""
     try:
         x, steps = _fall(system, linear, load, time, previous)
     except (InvertedElementError, LinearSolveError) as error:
@@ -47,25 +47,26 @@ def _fall(system: System, linear: LinearSolver, load: Load, time: float, previou
     dampers[system.mechanical] = FIRST_DAMPING * np.median(now.tangent.upper.diagonal()[system.mechanical])
     refused, least, least_at = 0, np.inf, 0
     for step in range(MAX_STEPS):
-        unbalanced = _unbalanced(system, now)
+        unbalanced = _unbalanced_force(system, now)
         if unbalanced < 0.9 * least:
             least, least_at = unbalanced, step
-        if step - least_at >= PATIENCE or refused >= MAX_REFUSED:
+        if step - least_at >= MOST_IDLE_STEPS or refused >= MAX_REFUSED:
             break
-        if step > 0 and np.linalg.norm(now.residual) <= NEAR * max(now.load_norm, previous.force_scale):
+        if step > 0 and np.linalg.norm(now.residual) <= NEWTON_RESIDUAL * max(now.load_norm, previous.force_scale):
             return x, step
-        change = linear.solve(now.tangent.shifted(dampers), -now.residual, LINEAR_TOLERANCE)
+        change = linear.solve(now.tangent.with_shift(dampers), -now.residual, LINEAR_TOLERANCE)
         try:
             then = evaluate(x + change)
         except InvertedElementError:
-            dampers *= SLOWER
+            dampers *= MOST_DAMPING_RATIO
             refused += 1
             continue
         x, now, refused = x + change, then, 0
-        dampers *= np.clip(_unbalanced(system, now) / max(unbalanced, TINY), FASTER, SLOWER)
+        ratio = _unbalanced_force(system, now) / max(unbalanced, TINY)
+        dampers *= np.clip(ratio, LEAST_DAMPING_RATIO, MOST_DAMPING_RATIO)
     raise NoEquilibriumError(f"no equilibrium in {step + 1} damped steps either", x, None)
 
 
-def _unbalanced(system: System, now: Evaluation) -> float:
+def _unbalanced_force(system: System, now: Evaluation) -> float:
     """Norm of the nodal forces; gaps that open and close jump too much to steer by."""
     return float(np.linalg.norm(now.residual[system.mechanical]))

@@ -6,7 +6,7 @@ from solve.system import State, System
 from solve.terms.film import FilmRegion
 from solve.terms.solid import SolidRegion
 
-CRUSHED = 0.3  # det F: below it the element is to blame, whatever ended the iteration
+CRUSHED_VOLUME_RATIO = 0.3  # det F: below it the element is to blame, whatever ended the iteration
 
 
 def smallest_volumes(region: SolidRegion | FilmRegion, displacement: Floats) -> Floats:
@@ -14,7 +14,7 @@ def smallest_volumes(region: SolidRegion | FilmRegion, displacement: Floats) -> 
     return smallest_jacobian(deformation_gradient(region.gradient, displacement[region.tets]))
 
 
-INCOMPRESSIBLE = 10.0  # of the bulk modulus over the shear modulus; 9.7 at a Poisson's ratio of 0.45
+INCOMPRESSIBLE_MODULI_RATIO = 10.0  # of the bulk modulus over the shear modulus; 9.7 at a Poisson's ratio of 0.45
 
 
 def crushes(system: System, before: State, state: State) -> bool:
@@ -22,11 +22,11 @@ def crushes(system: System, before: State, state: State) -> bool:
 
     Then Newton's method has gone too far, to an equilibrium in which a fold of the mesh holds itself.
     """
-    return _least_volume(system, state) < CRUSHED <= _least_volume(system, before)
+    return _least_volume(system, state) < CRUSHED_VOLUME_RATIO <= _least_volume(system, before)
 
 
 def _least_volume(system: System, state: State) -> float:
     """The smallest det F of media that can hardly be compressed."""
     displacement = system.displacement(state.x)
-    rubbers = [s for s in system.solids if s.law.bulk_modulus > INCOMPRESSIBLE * s.law.shear_modulus]
+    rubbers = [s for s in system.solids if s.law.bulk_modulus > INCOMPRESSIBLE_MODULI_RATIO * s.law.shear_modulus]
     return float(min((smallest_volumes(one, displacement).min() for one in rubbers), default=1.0))

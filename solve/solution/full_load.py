@@ -48,31 +48,31 @@ class FullLoad:
         self._tet_mesh = tet_mesh
         self._base = discretise(model, tet_mesh, resolve_dot(model.dot, model.segment))
         self._linear = LinearSolver(self._base.system.factorisation_shift)
-        self._rest = _rest(self._base, self._linear)
-        past = [self._rest]
+        self._rest_state = _rest_state(self._base, self._linear)
+        past, system, recorder = [self._rest_state], self._base.system, self._base.recorder
         for before, target in pairwise(_targets(self._base)):
-            _refuse(march(self._base.system, self._linear, past, target, before.kink, self._base.recorder.record))
+            _raise_if_stopped(march(system, self._linear, past, target, before.kink, recorder.record))
         self._state = past[-1]
-        self.answer = _answer(self._base)
+        self.answer = _last_response(self._base)
         charge = self._base.recorder.trace(model.press).film_charge_C[-1]
         self.electrode_voltages_V: Floats = charge / self._base.recorder.capacitance_F
 
     def derivatives(self, variations: Mapping[str, Variation]) -> dict[str, FullResponse]:
-        """Of the answer by each parameter. ValueError for one that changes the mesh or the number of unknowns."""
+        """Derivatives of the answer by each parameter. ValueError for one that changes the mesh or the unknowns."""
         base, system, found = self._base, self._base.system, {}
-        trial = system.trial(self._state.x, self._state.load, self._state.time, self._rest)
-        tangent = system.evaluate(trial, self._rest.histories).tangent
+        trial = system.trial(self._state.x, self._state.load, self._state.time, self._rest_state)
+        tangent = system.evaluate(trial, self._rest_state.histories).tangent
         for number, (name, variation) in enumerate(variations.items()):
             pair = twins_of(name, variation, base)
             for twin in pair:
-                twin.start(self._rest)
+                twin.start(self._rest_state)
             tow(pair, self._linear, tangent, self._state, similar=number > 0)
-            below, above = (_answer(twin.setup) for twin in pair)
+            below, above = (_last_response(twin.setup) for twin in pair)
             found[name] = FullResponse(*((high - low) / variation.span for low, high in zip(below, above, strict=True)))
         return found
 
-    def beside(self, model: Model) -> FullResponse:
-        """What a similar model gives on the same mesh, moved to its sizes; from rest where that is too far.
+    def similar_answer(self, model: Model) -> FullResponse:
+        """Answer of a similar model on the same mesh, moved to its sizes; solved from rest where that is too far.
 
         ValueError, StoppedShortError.
         """
@@ -86,15 +86,15 @@ class FullLoad:
         else:
             setup = discretise(model, morphed_mesh(self._tet_mesh, base.model.segment, model.segment), dot)
             found = Equilibria.of(base.system, base.tet_mesh, [(1.0, self._state.x)])
-            course = found.unfolded(setup.unfolded).course(setup.system, setup.tet_mesh)
+            course = found.unfold(setup.unfolded).course(setup.system, setup.tet_mesh)
             guess = None if course is None else course.unknowns[0]
         linear = LinearSolver(setup.system.factorisation_shift)
-        past, last = [_rest(setup, linear)], _targets(setup)[-1]
+        past, last = [_rest_state(setup, linear)], _targets(setup)[-1]
         rest = past[0]
-        _refuse(reach(setup.system, linear, past, last, True, guess))
+        _raise_if_stopped(reach(setup.system, linear, past, last, True, guess))
         linear.close()
         setup.recorder.record(past[-1], rest)
-        return _answer(setup)
+        return _last_response(setup)
 
     def close(self) -> None:
         """Give the memory of the factorisation back."""
@@ -102,11 +102,11 @@ class FullLoad:
 
 
 def _targets(setup: Setup) -> list[Target]:
-    """From rest to the full load."""
+    """Loads from rest to the full load."""
     return setup.targets(follows_time=False)[: setup.model.press.load_steps + 1]
 
 
-def _rest(setup: Setup, linear: LinearSolver) -> State:
+def _rest_state(setup: Setup, linear: LinearSolver) -> State:
     try:
         rest = rest_state(setup.system, linear, _targets(setup)[0])
     except NoEquilibriumError as error:
@@ -115,13 +115,13 @@ def _rest(setup: Setup, linear: LinearSolver) -> State:
     return rest
 
 
-def _refuse(failure: str | None) -> None:
+def _raise_if_stopped(failure: str | None) -> None:
     if failure is not None:
         raise StoppedShortError(failure)
 
 
-def _answer(setup: Setup) -> FullResponse:
-    """Of the last recorded state."""
+def _last_response(setup: Setup) -> FullResponse:
+    """Force and open-circuit voltage in the last recorded state."""
     recorder: Recorder = setup.recorder
     trace = recorder.trace(setup.model.press)
     charge = float(trace.film_charge_C[-1].sum())

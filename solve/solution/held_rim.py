@@ -5,7 +5,8 @@ import numpy as np
 from solve.system import Load, State, System
 
 NEAR_RIM = 0.01  # of the segment's length: a force stops a dot just short of the rim
-OVERLAP = -1e-6  # of the segment's length: contact does not act on nodes that are held, so none may be overlapped
+ALLOWED_OVERLAP = -1e-6
+"""Of the segment's length: contact does not act on nodes that are held, so that none may be overlapped."""
 
 
 def rim_met(system: System, last: State, load: Load, gap_left: float | None = None) -> int | None:

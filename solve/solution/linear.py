@@ -30,14 +30,16 @@ from solve.solution.preconditioner import Preconditioner
 
 KRYLOV_ITERATIONS = 18  # with a factorisation of the same matrix
 REFINEMENTS = 5  # as LAPACK's xSYRFS; each must at least halve the error
-REFINED, ACCEPTED = 1e-12, 1e-10  # backward errors: refinement goes on down to the first, the second will do
+REFINED_ERROR, ACCEPTED_ERROR = 1e-12, 1e-10
+"""Backward errors: refinement goes on down to the first, the second will do."""
 WEAK_SHIFT = 1e-4  # of Newton's: many right-hand sides share the factorisation, and each then takes fewer iterations
-EXACT = 1e-8  # relative residual: far below what a Newton step is off by itself
+EXACT_RESIDUAL = 1e-8  # relative residual: far below what a Newton step is off by itself
 LONGEST_REST = 64  # solutions
-SAFETY, LITTLE = 0.3, 0.1  # a refinement gains what is wanted and this much more, and a digit at least
-EASY = 4  # back substitutions of a solution that the factorisation fits well
-CHANGED = 2.0  # back substitutions that a discrete state costs which has changed since, of an unsymmetric tangent
-BORDERED = 0.25  # of a symmetric one, that a constraint costs which has closed or opened since
+REFINEMENT_SAFETY, LEAST_REFINEMENT_GAIN = 0.3, 0.1
+"""Factor by which a refinement is to gain more than is wanted; and the least that it gains, a digit."""
+EASY_BACK_SUBSTITUTIONS = 4  # back substitutions of a solution that the factorisation fits well
+BACK_SUBSTITUTIONS_A_STATE = 2.0  # that has changed since, of an unsymmetric tangent
+BACK_SUBSTITUTIONS_A_CONSTRAINT = 0.25  # that has closed or opened since, of a symmetric one
 EVENS_OUT = 15_000, 14.0, 2.0 / 3.0  # unknowns, back substitutions that cost as much as a factorisation, exponent
 
 
@@ -62,8 +64,8 @@ class LinearSolver:
         self.name = self._registry[0].name
         """Name of the factorisation used last."""
         self.exact = False
-        """Whether every tangent is factorised, and its system solved to EXACT: where inexact steps have failed, the
-        equilibrium that is met must not depend on them."""
+        """Whether every tangent is factorised, and its system solved to EXACT_RESIDUAL: where inexact steps have
+        failed, the equilibrium that is met must not depend on them."""
 
     def solve(self, tangent: Tangent, rhs: Floats, tolerance: float, similar: bool = False) -> Floats:
         """Solve A x = rhs to a relative residual.
@@ -71,7 +73,7 @@ class LinearSolver:
         similar : the tangent has changed little since the last factorisation.
         LinearSolveError when every factorisation fails.
         """
-        wanted = min(tolerance, EXACT) if self.exact else tolerance
+        wanted = min(tolerance, EXACT_RESIDUAL) if self.exact else tolerance
         return self._solve(tangent, rhs, similar, _Goal(_relative_residual, wanted, wanted, tolerance, 1.0, 0))
 
     def solve_to_round_off(self, tangent: Tangent, rhs: Floats, similar: bool = False) -> Floats:
@@ -79,25 +81,25 @@ class LinearSolver:
 
         similar : the tangent is that of the last such solution. LinearSolveError when every factorisation fails.
         """
-        goal = _Goal(_backward_error, 1e-8, REFINED, ACCEPTED, WEAK_SHIFT, REFINEMENTS)
+        goal = _Goal(_backward_error, 1e-8, REFINED_ERROR, ACCEPTED_ERROR, WEAK_SHIFT, REFINEMENTS)
         return self._solve(tangent, rhs, similar, goal) if rhs.any() else np.zeros_like(rhs)
 
     def _solve(self, tangent: Tangent, rhs: Floats, similar: bool, goal: "_Goal") -> Floats:
-        """With the last factorisation where that will do, else with the first of the registry that does."""
+        """Solve with the last factorisation where that will do, else with the first of the registry that does."""
         reason = ""
         if similar and self._current is not None:
             try:
-                solution, error = self._again(tangent, rhs, goal)
+                solution, error = self._solve_with_last(tangent, rhs, goal)
             except Exception:  # PARDISO finds a zero pivot in a back substitution too
                 self.close()
             else:
                 if error <= goal.accepted:
                     return solution
-        asked = self._asked()
+        asked = self._solvers_to_try()
         for kind in asked:
             try:
                 self._factorise(tangent, kind, goal.shift)
-                solution, error = self._refined(tangent, rhs, KRYLOV_ITERATIONS, goal, REFINEMENTS)
+                solution, error = self._refine(tangent, rhs, KRYLOV_ITERATIONS, goal, REFINEMENTS)
             except Exception as failure:  # MKL absent, zero pivot, out of memory: the next one may do
                 reason = str(failure)
                 self.close()
@@ -108,23 +110,23 @@ class LinearSolver:
                 reason = f"{goal.measure.__name__.strip('_').replace('_', ' ')} {error:.1e}"
         raise LinearSolveError(f"{', '.join(kind.name for kind in asked)}: {reason}")
 
-    def _again(self, tangent: Tangent, rhs: Floats, goal: "_Goal") -> tuple[Floats, float]:
-        """With the last factorisation."""
+    def _solve_with_last(self, tangent: Tangent, rhs: Floats, goal: "_Goal") -> tuple[Floats, float]:
+        """Solve with the last factorisation; the solution and its error."""
         assert self._current is not None
         before = self._current.back_substitutions
         self._current.adapt(tangent)
-        solution, error = self._refined(tangent, rhs, self._patience, goal, goal.similar_refinements)
-        self._excess += max(self._current.back_substitutions - before - EASY, 0)
+        solution, error = self._refine(tangent, rhs, self._patience, goal, goal.similar_refinements)
+        self._excess += max(self._current.back_substitutions - before - EASY_BACK_SUBSTITUTIONS, 0)
         return solution, error
 
-    def _asked(self) -> list[type[Factorisation]]:
-        """The registry, without those that rest, but for the last one, which always answers."""
+    def _solvers_to_try(self) -> list[type[Factorisation]]:
+        """Factorisations of the registry without those that rest, but for the last one, which always answers."""
         awake = [kind for kind in self._registry if not self._rest[kind.name]]
         self._rest -= Counter(self._rest.keys())
         return awake or self._registry[-1:]
 
     def _remember_success(self, kind: type[Factorisation], asked: list[type[Factorisation]]) -> None:
-        """Those asked before it failed on a matrix that it solved: from the second time on they rest for 2, 6, 14 ...
+        """Let those that failed on a matrix rest, which this one solved: from the second time on for 2, 6, 14 ...
         solutions, then they are asked again.
         """
         self._failures[kind.name] = 0
@@ -142,8 +144,8 @@ class LinearSolver:
         if self.exact or self._current is None or self._excess > 2 * self._patience:
             return False
         if tangent.excess is not None:
-            return changed is not None and CHANGED * changed <= self._patience // 2
-        return BORDERED * self._current.changed(tangent) <= self._patience
+            return changed is not None and BACK_SUBSTITUTIONS_A_STATE * changed <= self._patience // 2
+        return BACK_SUBSTITUTIONS_A_CONSTRAINT * self._current.changed_constraints(tangent) <= self._patience
 
     @property
     def _patience(self) -> int:
@@ -158,25 +160,25 @@ class LinearSolver:
         self._current = None
 
     def _factorise(self, tangent: Tangent, kind: type[Factorisation], shift: float) -> None:
-        """With a share of the shift."""
+        """Factorise the tangent with a share of the shift."""
         if self._current is None or type(self._current.direct) is not kind:
             self.close()
             self._current = Preconditioner(kind(), self._multipliers)
         self._current.factorise(tangent, shift * self._shift)
         self._excess = 0
 
-    def _refined(
+    def _refine(
         self, tangent: Tangent, rhs: Floats, iterations: int, goal: "_Goal", refinements: int
     ) -> tuple[Floats, float]:
-        """GMRES on the right-hand side, then on what is left of it while that at least halves the error."""
-        solution = self._krylov(tangent, rhs, goal.krylov, iterations)
+        """Solve by GMRES, then again for what is left of the right-hand side while that at least halves the error."""
+        solution = self._solve_by_gmres(tangent, rhs, goal.krylov, iterations)
         residual = rhs - tangent @ solution
         error = goal.measure(tangent, rhs, solution, residual)
         for _ in range(refinements):
             if error <= goal.refined or not np.isfinite(error):
                 break
-            wanted = max(goal.krylov, min(SAFETY * goal.refined / error, LITTLE))
-            finer = solution + self._krylov(tangent, residual, wanted, iterations)
+            wanted = max(goal.krylov, min(REFINEMENT_SAFETY * goal.refined / error, LEAST_REFINEMENT_GAIN))
+            finer = solution + self._solve_by_gmres(tangent, residual, wanted, iterations)
             left = rhs - tangent @ finer
             less = goal.measure(tangent, rhs, finer, left)
             if not less < error:
@@ -186,8 +188,8 @@ class LinearSolver:
                 break
         return solution, error if np.isfinite(error) else np.inf
 
-    def _krylov(self, tangent: Tangent, rhs: Floats, tolerance: float, iterations: int) -> Floats:
-        """GMRES preconditioned from the right by the last factorisation."""
+    def _solve_by_gmres(self, tangent: Tangent, rhs: Floats, tolerance: float, iterations: int) -> Floats:
+        """Solve by GMRES, preconditioned from the right by the last factorisation."""
         assert self._current is not None
         return flexible_gmres(lambda v: tangent @ v, self._current, rhs, 0.9 * tolerance, iterations)
 
@@ -211,11 +213,12 @@ class _Goal:
 
 
 def _relative_residual(_tangent: Tangent, rhs: Floats, _solution: Floats, residual: Floats) -> float:
+    """Relative residual |r| / |b| of a solution."""
     return float(np.linalg.norm(residual)) / (float(np.linalg.norm(rhs)) or 1.0)
 
 
 def _backward_error(tangent: Tangent, rhs: Floats, solution: Floats, residual: Floats) -> float:
-    """Componentwise; a row without anything in it is solved by anything."""
+    """Componentwise backward error of a solution; a row without anything in it is solved by anything."""
     size = tangent.absolute() @ np.abs(solution) + np.abs(rhs)
     rows = size > 0.0
     return float(np.max(np.abs(residual[rows]) / size[rows], initial=0.0))

@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 
 from foundation.arrays import Floats
-from solve.solution.advice import explained
-from solve.solution.continuation import snapped
+from solve.solution.advice import explain_failure
+from solve.solution.continuation import snap
 from solve.solution.crushing import crushes
 from solve.solution.errors import NoEquilibriumError
 from solve.solution.held_rim import rim_met
 from solve.solution.linear import LinearSolver
-from solve.solution.newton import NEAR_FORESEEN, equilibrate
+from solve.solution.newton import SETTLING_RESIDUAL_FORESEEN, equilibrate
 from solve.solution.schedule import Target, load_between
 from solve.solution.work import opens_too_coarsely, with_work
 from solve.system import Load, State, System
@@ -84,9 +84,9 @@ def march(
                 size *= 0.5
                 continue
             elsewhere = may_snap and rim_met(system, past[-1], load) is None  # between two rigid bodies nothing falls
-            found = _after_snap(system, linear, past[-1], load, time) if elsewhere else None
+            found = _snap_or_none(system, linear, past[-1], load, time) if elsewhere else None
             if found is None:
-                why = explained(system, failure, past[-1], load)
+                why = explain_failure(system, failure, past[-1], load)
                 return f"sub-steps fell below 1/{1 / smallest:.0f} of it: {why}"
             state, error = found, system.time_error(past[-1], found, after_kink=True)
         done, first = done + size, state.snapped
@@ -98,9 +98,10 @@ def march(
     return None
 
 
-def _after_snap(system: System, linear: LinearSolver, last: State, load: Load, time: float) -> State | None:
+def _snap_or_none(system: System, linear: LinearSolver, last: State, load: Load, time: float) -> State | None:
+    """The equilibrium that the segment falls into, None where it finds none."""
     try:
-        return snapped(system, linear, load, time, last)
+        return snap(system, linear, load, time, last)
     except NoEquilibriumError:
         return None
 
@@ -110,32 +111,34 @@ def _equilibrate(system: System, linear: LinearSolver, past: list[State], load: 
     last = past[-1]
     if len(past) > 1:
         with suppress(NoEquilibriumError):
-            return equilibrate(system, linear, _ahead(past[-2], last, time), load, time, last, near=NEAR_FORESEEN)
+            return equilibrate(
+                system, linear, _extrapolate(past[-2], last, time), load, time, last, near=SETTLING_RESIDUAL_FORESEEN
+            )
     try:
-        return equilibrate(system, linear, _touching(system, last, load, time, 4), load, time, last)
+        return equilibrate(system, linear, _move_to_contact(system, last, load, time, 4), load, time, last)
     except NoEquilibriumError:  # on a curved dot four nodes can be too far from each other for a small force
         if system.unknowns.approach < 0:
             raise
-    return equilibrate(system, linear, _touching(system, last, load, time, 1), load, time, last)
+    return equilibrate(system, linear, _move_to_contact(system, last, load, time, 1), load, time, last)
 
 
-def _ahead(before: State, last: State, time: float) -> Floats:
-    """The line through two states, at a later time. Contact spreads with kinks: a parabola through three is farther off
-    where it ends, and costs more iterations.
+def _extrapolate(before: State, last: State, time: float) -> Floats:
+    """Unknowns (count,) on the line through two states, at a later time. Contact spreads with kinks: a parabola through
+    three is farther off where it ends, and costs more iterations.
     """
     return last.x + (last.x - before.x) * (time - last.time) / (last.time - before.time)
 
 
-def _touching(system: System, last: State, load: Load, time: float, nodes: int) -> Floats:
-    """A force needs contact to start from: move the dot until it overlaps so many nodes."""
+def _move_to_contact(system: System, last: State, load: Load, time: float, nodes: int) -> Floats:
+    """Unknowns (count,) with the dot moved until it overlaps a number of nodes: a force needs contact to start from."""
     approach = system.unknowns.approach
     if approach < 0 or load.drive <= last.load.drive:
         return last.x
-    if system.contact.closed(system.trial(last.x, load, time, last)).any():
+    if system.contact.closed_nodes(system.trial(last.x, load, time, last)).any():
         return last.x
     x = last.x.copy()
     for _ in range(MAX_APPROACHES):  # on a slope the gap closes more slowly than the dot moves
-        gap = _gap(system, x, load, time, last)
+        gap = _mean_gaps(system, x, load, time, last)
         nearest = np.sort(gap)[min(nodes, len(gap)) - 1]
         if nearest < 0.0:
             break
@@ -143,7 +146,7 @@ def _touching(system: System, last: State, load: Load, time: float, nodes: int) 
     return x
 
 
-def _gap(system: System, x: Floats, load: Load, time: float, last: State) -> Floats:
-    """Mean gap (c,) at the nodes of the contact."""
+def _mean_gaps(system: System, x: Floats, load: Load, time: float, last: State) -> Floats:
+    """Mean gap (c,) around each node of the contact."""
     trial = system.trial(x, load, time, last)
     return system.contact.mean_gap(trial.displacement, trial.move)

@@ -7,7 +7,7 @@ import numpy as np
 
 from foundation.arrays import Bools, Floats
 from solve.solution.errors import LostContactError, NoEquilibriumError
-from solve.solution.held_rim import OVERLAP, rim_met
+from solve.solution.held_rim import ALLOWED_OVERLAP, rim_met
 from solve.solution.linear import LinearSolveError, LinearSolver
 from solve.system import Evaluation, Load, State, System
 from solve.terms.solid import InvertedElementError
@@ -19,20 +19,21 @@ ROUNDED_TOLERANCE = 1e-6  # a stiff film on a soft foam: its own round-off may e
 LEAST_LOAD = 1e-5  # solver units: what is less, the first touch of a moving mass, counts as this much
 MAX_ITERATIONS = 25
 MAX_HALVINGS = 6
-SAME = 1e-3  # relative: a residual that comes back with the same discrete states runs in a circle
+SAME_RESIDUAL = 1e-3  # relative: a residual that comes back with the same discrete states runs in a circle
 MAX_CIRCLES = 3
-NEAR = 1.0  # relative residual from which constraints settle within a step: farther away they settle to the wrong ones
-NEAR_FORESEEN = 10.0  # from a start that the past foretold: what it gets wrong is most of all where contact ends
+SETTLING_RESIDUAL, SETTLING_RESIDUAL_FORESEEN = 1.0, 10.0
+"""Relative residual from which constraints settle within a step: farther away they settle to the wrong ones. The second
+one from a start that the past foretold, which is wrong most of all in where contact ends."""
 MAX_SETTLING = 10  # of the constraints in one step
-LITTLE = 0.1  # what a linear solution gains at least
+LEAST_LINEAR_GAIN = 0.1  # what a linear solution gains at least
 FORCING = 0.03  # residual of a linear solution over the square of that of Newton's iteration, which falls with it
-LAST = 0.3  # of TOLERANCE: what the last linear solution is to leave
-LOOSEST = 1e-2  # residual of a linear solution, far from the end, relative to the residual and to the load
+LAST_LINEAR_SHARE = 0.3  # of TOLERANCE: what the last linear solution is to leave
+LOOSEST_LINEAR_RESIDUAL = 1e-2  # far from the end, relative to Newton's residual and to the load
 
 
 def equilibrate(
     system: System, linear: LinearSolver, x: Floats, load: Load, time: float, previous: State, damped: bool = False,
-    near: float = NEAR,
+    near: float = SETTLING_RESIDUAL,
 ) -> State:  # fmt: skip
     """Find the equilibrium near x (count,) at a time after a converged state; damped : see Trial.
 
@@ -55,7 +56,7 @@ def equilibrate(
             exact = correction <= ROUND_OFF and relative <= ROUNDED_TOLERANCE
             if (relative <= TOLERANCE or exact) and settled:
                 converged = State(time, load, x, previous.histories, scale, iteration, relative)
-                if rim_met(system, converged, load, OVERLAP) is not None:
+                if rim_met(system, converged, load, ALLOWED_OVERLAP) is not None:
                     raise NoEquilibriumError("the dot overlaps the held rim", x, None)
                 trial = system.trial(x, load, time, previous, damped)
                 return replace(converged, histories=system.advance(trial, previous.histories))
@@ -63,15 +64,16 @@ def equilibrate(
                 break
             similar = linear.may_reuse(now.tangent, None if status is None else int(np.sum(status != now.status)))
             # inexact Newton: the linear residual need fall neither faster than the nonlinear one nor below its goal
-            loosest = min(FORCING * relative, LOOSEST / max(relative, 1.0))
-            tolerance = min(max(loosest, LAST * TOLERANCE / max(relative, 1e-300)), LOOSEST)
+            loosest = min(FORCING * relative, LOOSEST_LINEAR_RESIDUAL / max(relative, 1.0))
+            last = LAST_LINEAR_SHARE * TOLERANCE / max(relative, 1e-300)
+            tolerance = min(max(loosest, last), LOOSEST_LINEAR_RESIDUAL)
             step = linear.solve(now.tangent, -now.residual, tolerance, similar)
             share, before = circles.share(now.status, norm), x
             if circles.count > MAX_CIRCLES:
                 break
             status = now.status
             if relative <= near:
-                step, status = _settled(system, linear, now, x, step, tolerance, load, time, previous)
+                step, status = _settle_constraints(system, linear, now, x, step, tolerance, load, time, previous)
             x, now = _advance(system, x, share * step, load, time, previous, damped)
             correction = _relative_change(system, before, x)
             lost = lost or (system.force_driven and not now.touching)
@@ -99,7 +101,7 @@ class Circles:
     def share(self, status: Bools, norm: float) -> float:
         """How much of the next step to take from an iterate with these discrete states and norm of the residual."""
         norms = self._visited.setdefault(status.tobytes(), [])
-        if not any(abs(norm - other) <= SAME * norm for other in norms):
+        if not any(abs(norm - other) <= SAME_RESIDUAL * norm for other in norms):
             norms.append(norm)
             return 1.0
         self.count += 1
@@ -107,11 +109,11 @@ class Circles:
         return float(0.5**self.count)
 
 
-def _settled(
+def _settle_constraints(
     system: System, linear: LinearSolver, now: Evaluation, x: Floats, step: Floats, tolerance: float,
     load: Load, time: float, previous: State,
 ) -> tuple[Floats, Bools]:  # fmt: skip
-    """The step, solved again as long as constraints open and close in it, and their states in the end.
+    """Solve the step again as long as constraints open and close in it; the step, and their states in the end.
 
     The linearised problem with its inequalities is solved, not only its equations: contact settles while the media are
     as they are, which spares evaluations and wild pressures on the way.
@@ -125,11 +127,11 @@ def _settled(
         if there.tobytes() in seen:
             break
         seen.add(there.tobytes())
-        other = system.switched(now, here, histories, there)
+        other = system.with_status(now, here, histories, there)
         if other is None or not linear.may_reuse(other.tangent, None):
             break
         left = -other.residual - other.tangent @ step
-        wanted = min(tolerance * size / max(float(np.linalg.norm(left)), 1e-300), LITTLE)
+        wanted = min(tolerance * size / max(float(np.linalg.norm(left)), 1e-300), LEAST_LINEAR_GAIN)
         step, held = step + linear.solve(other.tangent, left, wanted, similar=True), there
     return step, held
 
@@ -141,7 +143,7 @@ def _relative_change(system: System, before: Floats, x: Floats) -> float:
 
 
 def _worst_node(system: System, now: Evaluation) -> int:
-    """The node with the largest unbalanced force."""
+    """Node with the largest unbalanced force."""
     force = np.nan_to_num(np.abs(np.append(now.residual, 0.0)[system.unknowns.displacement]), nan=np.inf)
     return int(np.argmax(force.max(axis=1)))
 

@@ -23,48 +23,51 @@ from foundation.arrays import Bools, Floats, Ints
 from solve.fem.tangent import Tangent
 from solve.solution.factorisation import Factorisation
 
-NOTHING = 1e-12  # relative singular value of a constraint that holds nothing
+EMPTY_CONSTRAINT = 1e-12  # relative singular value of a constraint that holds nothing
 
 
 class Preconditioner:
-    """multipliers : (c,) unknowns of the constraints; an open one has the diagonal entry -1 and nothing else."""
+    """A factorisation whose changed constraints are bordered. multipliers : (c,) unknowns of the constraints; an open
+    one has the diagonal entry -1 and nothing else.
+    """
 
     def __init__(self, direct: Factorisation, multipliers: Ints) -> None:
         self.direct, self._multipliers = direct, multipliers
         self._closed: Bools = np.zeros(len(multipliers), dtype=np.bool_)
-        self._known: _Known | None = None
+        self._changed: _ChangedConstraints | None = None
         self._border: _Border | None = None
         self.back_substitutions = 0
         """Since the factorisation."""
 
     def factorise(self, tangent: Tangent, shift: Floats) -> None:
         """Factorise with shift (n,) on the diagonal; an unsymmetric tangent as it is."""
-        self._closed, self._known, self._border = self._closed_in(tangent), None, None
-        self.direct.factorise(tangent if tangent.excess is not None else tangent.shifted(shift))
+        self._closed, self._changed, self._border = self._closed_constraints(tangent), None, None
+        self.direct.factorise(tangent if tangent.excess is not None else tangent.with_shift(shift))
         self.back_substitutions = 0
 
-    def changed(self, tangent: Tangent) -> int:
-        """How many constraints of a tangent have closed or opened since the factorisation."""
-        return int(np.sum(self._closed_in(tangent) != self._closed))
+    def changed_constraints(self, tangent: Tangent) -> int:
+        """Number of constraints of a tangent that have closed or opened since the factorisation."""
+        return int(np.sum(self._closed_constraints(tangent) != self._closed))
 
-    def _closed_in(self, tangent: Tangent) -> Bools:
+    def _closed_constraints(self, tangent: Tangent) -> Bools:
+        """Whether each constraint (c,) is closed in a tangent."""
         return np.asarray(tangent.diagonal[self._multipliers] == 0.0)
 
     def adapt(self, tangent: Tangent) -> None:
         """Open and close what a symmetric tangent has open and closed; keep what is known of it."""
-        rows = self._multipliers[self._closed_in(tangent) != self._closed]
+        rows = self._multipliers[self._closed_constraints(tangent) != self._closed]
         if len(rows) == 0 or tangent.excess is not None:
             self._border = None
             return
         if self._border is not None and np.array_equal(rows, self._border.rows):
             return
-        if self._known is None:
-            self._known = _Known(np.zeros(0, np.int64), sp.csr_array((0, tangent.upper.shape[0])), None)
-        new = np.setdiff1d(rows, self._known.rows)
+        if self._changed is None:
+            self._changed = _ChangedConstraints(np.zeros(0, np.int64), sp.csr_array((0, tangent.upper.shape[0])), None)
+        new = np.setdiff1d(rows, self._changed.rows)
         if len(new):
             across = _borders(tangent, new)
-            self._known = self._known.extended(new, across, self.direct.back_substitute(across.T.toarray()))
-        self._border = self._known.border(rows, tangent.diagonal[rows] != 0.0)
+            self._changed = self._changed.extend(new, across, self.direct.back_substitute(across.T.toarray()))
+        self._border = self._changed.border(rows, tangent.diagonal[rows] != 0.0)
 
     def __call__(self, rhs: Floats) -> Floats:
         """Solve approximately, (n,)."""
@@ -74,7 +77,7 @@ class Preconditioner:
             return self.direct.back_substitute(rhs)
         rest = rhs.copy()
         rest[border.rows] = 0.0
-        return border.applied(self.direct.back_substitute(rest), rhs)
+        return border.correct(self.direct.back_substitute(rest), rhs)
 
 
 def _borders(tangent: Tangent, rows: Ints) -> sp.csr_array:
@@ -87,23 +90,23 @@ def _borders(tangent: Tangent, rows: Ints) -> sp.csr_array:
 
 
 @dataclass(frozen=True)
-class _Known:
-    """Of the constraints that have changed at any time since the factorisation: rows (m,), across B^t (m, n) and
-    columns K^-1 B (n, m), None where there are none.
+class _ChangedConstraints:
+    """Constraints that have changed at any time since the factorisation: rows (m,), across B^t (m, n) and K^-1 B
+    (n, m), None where there are none.
     """
 
     rows: Ints
     across: sp.csr_array
     columns: Floats | None
 
-    def extended(self, rows: Ints, across: sp.csr_array, columns: Floats) -> "_Known":
-        """With more of them."""
+    def extend(self, rows: Ints, across: sp.csr_array, columns: Floats) -> "_ChangedConstraints":
+        """A copy with more constraints."""
         wider = columns if self.columns is None else np.column_stack([self.columns, columns])
-        return _Known(np.append(self.rows, rows), sp.vstack([self.across, across], format="csr"), wider)
+        return _ChangedConstraints(np.append(self.rows, rows), sp.vstack([self.across, across], format="csr"), wider)
 
     def border(self, rows: Ints, opened: Bools) -> "_Border":
-        """Of some of them. A pseudo-inverse, since a constraint may hold nothing; scaled, since one that opens is a
-        pressure and one that closes a gap.
+        """Border of some of the constraints. A pseudo-inverse, since a constraint may hold nothing; scaled, since one
+        that opens is a pressure and one that closes a gap.
         """
         assert self.columns is not None
         order = np.argsort(self.rows)
@@ -113,7 +116,7 @@ class _Known:
         size = np.sqrt(np.abs(schur.diagonal()))
         size[size == 0.0] = 1.0
         scale = np.outer(size, size)
-        return _Border(rows, opened, across, columns, np.linalg.pinv(schur / scale, rcond=NOTHING) / scale)
+        return _Border(rows, opened, across, columns, np.linalg.pinv(schur / scale, rcond=EMPTY_CONSTRAINT) / scale)
 
 
 @dataclass(frozen=True)
@@ -128,8 +131,8 @@ class _Border:
     columns: Floats
     inverse: Floats
 
-    def applied(self, held: Floats, rhs: Floats) -> Floats:
-        """The solution z (n,) from that without the border."""
+    def correct(self, held: Floats, rhs: Floats) -> Floats:
+        """Solution z (n,) with the border, from that without it."""
         own = rhs[self.rows]
         force = self.inverse @ (self.across @ held - np.where(self.opened, 0.0, own))
         result: Floats = held - self.columns @ force

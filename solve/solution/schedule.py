@@ -17,7 +17,7 @@ from solve.solution.thinning import thinned
 from solve.system import Load
 from solve.waveform import Waveform
 
-LARGEST_S = 1e12
+LARGEST_CELL = 1e12
 BISECTIONS = 60
 TINY = 1e-300
 ROUND_OFF = 1e-9
@@ -26,7 +26,7 @@ ROUND_OFF = 1e-9
 def duration_s(waveform: Waveform) -> float:
     """Time at which the waveform has ended."""
     if waveform.shape == "file":
-        return float(_table(waveform)[-1, 0])
+        return float(_waveform_table(waveform)[-1, 0])
     if waveform.shape == "half-sine":
         return 2.0 * waveform.rise_s
     fall = waveform.fall_s if waveform.shape == "trapezoid" else 0.0
@@ -36,7 +36,7 @@ def duration_s(waveform: Waveform) -> float:
 def corners_s(waveform: Waveform) -> Floats:
     """Times (n,) from the first to the last at which the rate may jump; of a file all its rows."""
     if waveform.shape == "file":
-        return np.asarray(_table(waveform)[:, 0])
+        return np.asarray(_waveform_table(waveform)[:, 0])
     corners = [0.0, waveform.rise_s]
     if waveform.shape in ("ramp", "trapezoid") and waveform.hold_s > 0.0:
         corners.append(waveform.rise_s + waveform.hold_s)
@@ -45,7 +45,7 @@ def corners_s(waveform: Waveform) -> Floats:
     return np.array(corners)
 
 
-MOST_ROWS, STRAIGHT = 200, 1e-4
+MOST_ROWS, STRAIGHT_SHARE = 200, 1e-4
 """Of a file, rows between which states are solved, and the share of the drive within which rows lie on a line."""
 
 
@@ -54,16 +54,16 @@ def stretches_s(waveform: Waveform) -> Floats:
     corners = corners_s(waveform)
     if waveform.shape != "file" or waveform.each_solved:
         return corners
-    return corners[thinned(corners, fraction(waveform, corners), STRAIGHT, MOST_ROWS)]
+    return corners[thinned(corners, fraction(waveform, corners), STRAIGHT_SHARE, MOST_ROWS)]
 
 
 def largest_fraction(waveform: Waveform) -> float:
-    """What the waveform reaches: 1, of a file perhaps less."""
+    """Largest fraction that the waveform reaches: 1, of a file perhaps less."""
     return float(fraction(waveform, corners_s(waveform)).max())
 
 
 def first_time_s(waveform: Waveform, share: Floats) -> Floats:
-    """When each fraction (n,) is first reached; the time of the largest fraction for what never is."""
+    """Time in s at which each fraction (n,) is first reached; that of the largest fraction for what never is."""
     corners = corners_s(waveform)
     reached = np.maximum.accumulate(fraction(waveform, corners))
     share = np.minimum(share, reached[-1])
@@ -88,13 +88,13 @@ def fraction(waveform: Waveform, time_s: Floats) -> Floats:
     if waveform.shape == "trapezoid":
         end = waveform.rise_s + waveform.hold_s + waveform.fall_s
         return np.clip(np.minimum(relative, (end - time_s) / waveform.fall_s), 0.0, 1.0)
-    table = _table(waveform)
+    table = _waveform_table(waveform)
     return np.interp(time_s, table[:, 0], table[:, 1])
 
 
-def _table(waveform: Waveform) -> Floats:
-    """The rows time_s, fraction (n, 2); what starts pressed is reached from rest in the time of a rise before."""
-    rows = _rows(waveform)
+def _waveform_table(waveform: Waveform) -> Floats:
+    """Rows time_s, fraction (n, 2); what starts pressed is reached from rest in the time of a rise before."""
+    rows = _waveform_rows(waveform)
     if rows[0, 1] == 0.0:
         if waveform.rise_s != Waveform.model_fields["rise_s"].default:
             raise InputError(
@@ -105,26 +105,27 @@ def _table(waveform: Waveform) -> Floats:
     return np.vstack([[rows[0, 0] - waveform.rise_s, 0.0], rows])
 
 
-def _rows(waveform: Waveform) -> Floats:
+def _waveform_rows(waveform: Waveform) -> Floats:
     """The columns time_s, fraction of a file, or what was given in its place, (n, 2)."""
     if waveform.samples is not None:
         return waveform.samples
     if waveform.file is None:
         raise InputError("press.waveform.file is missing: shape = 'file' needs a CSV file")
     file = Path(waveform.file)
-    regular_file_size(file, _told(file))
+    regular_file_size(file, _file_words(file))
     stat = file.stat()
-    return _read(file, stat.st_mtime_ns, stat.st_size)
+    return _read_table(file, stat.st_mtime_ns, stat.st_size)
 
 
-def _told(file: Path) -> str:
+def _file_words(file: Path) -> str:
+    """The file as a message names it."""
     return f"press.waveform.file = '{file}'"
 
 
 @lru_cache(maxsize=8)
-def _read(file: Path, _modified_ns: int, _size: int) -> Floats:
-    """Read and checked once for each state of the file, as a press asks for it at every step."""
-    where = _told(file)
+def _read_table(file: Path, _modified_ns: int, _size: int) -> Floats:
+    """Columns time_s and fraction (n, 2) of a file; read once for each of its states, as every step asks for it."""
+    where = _file_words(file)
     text = read_text(file, where)
     try:
         header, *rows = (row for row in csv.reader(text.splitlines()) if row)
@@ -136,12 +137,12 @@ def _read(file: Path, _modified_ns: int, _size: int) -> Floats:
         table = np.array([float(cell) for cell in cells]).reshape(-1, 2)
     except (KeyError, TypeError, ValueError, csv.Error):
         raise InputError(f"{where}: needs the columns time_s and fraction alone, with a number in each row") from None
-    bad = np.flatnonzero(~(np.abs(table) <= LARGEST_S).all(axis=1))  # NaN passes no comparison
+    bad = np.flatnonzero(~(np.abs(table) <= LARGEST_CELL).all(axis=1))  # NaN passes no comparison
     if len(bad):
         time, share = table[bad[0]]
         raise InputError(
             f"{where} sample {bad[0] + 1} = ({time:g}, {share:g}): time_s and fraction must be finite numbers "
-            f"of at most {LARGEST_S:g}"
+            f"of at most {LARGEST_CELL:g}"
         )
     if len(table) < 2 or not (np.diff(table[:, 0]) > 0).all() or table[:, 1].min() < 0 or table[:, 1].max() > 1:
         raise InputError(f"{where}: time_s must increase and fraction stay between 0 and 1, in at least two rows")
@@ -175,7 +176,7 @@ def schedule(press: Press, full: float, unit_length: float, follows_time: bool) 
     if press.slides_in_hold:
         return _press_slide_lift(press, waveform, full, unit_length)
     if follows_time:
-        times, kinks = _sampled(waveform, press.load_steps)
+        times, kinks = _solution_times(waveform, press.load_steps)
         share = fraction(waveform, times)
         share[share < 1e-12] = 0.0  # released, not all but
 
@@ -190,21 +191,21 @@ def schedule(press: Press, full: float, unit_length: float, follows_time: bool) 
         share = largest_fraction(waveform) * np.linspace(0.0, 1.0, press.load_steps + 1)
         last = press.load_steps
         targets = [Target(waveform.rise_s * f, Load((0.0, 0.0), full * f), n in (0, last)) for n, f in enumerate(share)]
-    return targets + _slide(press, targets[-1], waveform.rise_s, unit_length)
+    return targets + _slide_targets(press, targets[-1], waveform.rise_s, unit_length)
 
 
 def _press_slide_lift(press: Press, waveform: Waveform, full: float, unit_length: float) -> list[Target]:
-    """Down in the rise, along the path in the hold, up in the fall."""
+    """Targets down in the rise, along the path in the hold, up in the fall."""
     share = np.linspace(0.0, 1.0, press.load_steps + 1)
     down = [Target(waveform.rise_s * f, Load((0.0, 0.0), full * f), f in (0.0, 1.0)) for f in share]
-    along = _slide(press, down[-1], waveform.hold_s / len(press.path_xy_mm), unit_length)
+    along = _slide_targets(press, down[-1], waveform.hold_s / len(press.path_xy_mm), unit_length)
     end = along[-1]
     up = [Target(end.time + waveform.fall_s * f, Load(end.load.lateral, full * (1.0 - f)), f == 1.0) for f in share[1:]]
     return down + along + up
 
 
-def _sampled(waveform: Waveform, steps: int) -> tuple[Floats, Bools]:
-    """Times to solve at, and which are corners: steps to each piece of a waveform.
+def _solution_times(waveform: Waveform, steps: int) -> tuple[Floats, Bools]:
+    """Times to solve at, and which are corners: a number of steps to each piece of a waveform.
 
     Of a file, whose pieces are many, as many as its share of the drive or of the time asks for, at least one.
     """
@@ -230,14 +231,15 @@ def slide_s(press: Press) -> Floats:
 
 
 def first_reached_s(progress: Floats, press: Press) -> Floats:
-    """When states of a press in which time does not count are first reached; progress (t,) as in PressResult."""
+    """Times (t,) at which the waveform first reaches states (t,), whose progress is as in PressResult."""
     slides = slide_s(press)
     along = np.interp(progress, 1.0 + np.arange(len(slides)), slides)
     pressed = first_time_s(press.waveform or Waveform(), np.minimum(progress, 1.0))
     return np.where(progress <= 1.0 + ROUND_OFF, pressed, along)
 
 
-def _slide(press: Press, start: Target, leg_s: float, unit_length: float) -> list[Target]:
+def _slide_targets(press: Press, start: Target, leg_s: float, unit_length: float) -> list[Target]:
+    """Targets of a slide at the load of its start, leg_s for each leg."""
     targets, here, time = [], np.zeros(2), start.time
     share = np.linspace(0.0, 1.0, press.load_steps + 1)[1:]
     for point in press.path_xy_mm:

@@ -20,7 +20,7 @@ from mesh.morphing import morphed_mesh
 from mesh.types import TetMesh
 from solve.fem.tangent import Tangent
 from solve.model import Model, Press
-from solve.readout.course import PressCourse, course, read_together
+from solve.readout.course import PressCourse, common_readout_V, course
 from solve.result import PressResult, Trace
 from solve.setup import Setup, discretise, set_up
 from solve.solution.linear import LinearSolver
@@ -61,7 +61,7 @@ class Twin:
         return replace(base, drive=base.drive * self.drive_ratio)
 
     def start(self, base: State) -> None:
-        """At rest."""
+        """Begin at rest."""
         self.state = replace(base, load=self.load(base.load), histories=self.setup.system.at_rest(base.load).histories)
         self.setup.recorder.start(self.state)
 
@@ -72,20 +72,20 @@ class Twin:
         return self.state.x - other.state.x
 
     def residual(self, x: Floats, base: State) -> Floats:
-        """Of the base's unknowns under this parameter and this memory (count,)."""
+        """Residual (count,) of the base's unknowns under this parameter and this memory."""
         assert self.state is not None
-        trial = self.setup.system.trial(x, self.load(base.load), base.time, self.state, base.damped)
+        trial = self.setup.system.trial(x, self.load(base.load), base.time, self.state, base.is_damped)
         return self.setup.system.evaluate(trial, self.state.histories).residual
 
     def history(self, base: PressCourse, press: Press) -> Slopes:
-        """The histories themselves, not yet derivatives; the read-out on the times of the base's course.
+        """Histories at this parameter, not yet derivatives; the read-out on the times of the base's course.
 
         press : the base's, whose waveform gives the times.
         """
         model, recorder = self.setup.model, self.setup.recorder
         trace, capacitance = recorder.trace(model.press), float(recorder.capacitance_F.sum())
         open_circuit = trace.film_charge_C.sum(axis=1) / capacitance
-        read = read_together(trace, recorder.capacitance_F, press, model.amplifier, model.physics, base.time_s)
+        read = common_readout_V(trace, recorder.capacitance_F, press, model.amplifier, model.physics, base.time_s)
         if read is None:
             return Slopes(trace, open_circuit, None)
         return Slopes(trace, open_circuit, read[np.searchsorted(base.time_s, trace.time_s)])
@@ -94,7 +94,7 @@ class Twin:
         """Take the step to the unknowns x."""
         assert self.state is not None
         load = self.load(base.load)
-        trial = self.setup.system.trial(x, load, base.time, self.state, base.damped)
+        trial = self.setup.system.trial(x, load, base.time, self.state, base.is_damped)
         new = State(base.time, load, x, self.setup.system.advance(trial, self.state.histories))
         self.setup.recorder.record(new, self.state)
         self.state = new
@@ -124,7 +124,7 @@ def press_with_sensitivities(
 
 
 def twins_of(name: str, variation: Variation, base: Setup) -> tuple[Twin, Twin]:
-    """Below and above, on the base's mesh moved to their sizes; ValueError as press_with_sensitivities."""
+    """Systems below and above, on the base's mesh moved to their sizes; ValueError as press_with_sensitivities."""
     pair = []
     for changed in (variation.below, variation.above):
         moved = morphed_mesh(base.tet_mesh, base.model.segment, changed.segment)
@@ -136,7 +136,7 @@ def twins_of(name: str, variation: Variation, base: Setup) -> tuple[Twin, Twin]:
 
 
 def _march(base: Setup, linear: LinearSolver, twins: Mapping[str, tuple[Twin, Twin]]) -> str | None:
-    """Along the schedule, twins in tow; why it stopped short, or None. NoEquilibriumError at rest."""
+    """March along the schedule with the twins in tow; why it stopped short, or None. NoEquilibriumError at rest."""
     targets = base.targets(follows_time=True)
     rest = rest_state(base.system, linear, targets[0])
     base.recorder.start(rest)
@@ -163,7 +163,7 @@ def _tow(
     base: Setup, linear: LinearSolver, twins: Mapping[str, tuple[Twin, Twin]], state: State, before: State
 ) -> None:
     """Bring all twins to first order to a converged state of the base."""
-    trial = base.system.trial(state.x, state.load, state.time, before, state.damped)
+    trial = base.system.trial(state.x, state.load, state.time, before, state.is_damped)
     tangent = base.system.evaluate(trial, before.histories).tangent
     for number, pair in enumerate(twins.values()):
         tow(pair, linear, tangent, state, similar=number > 0)

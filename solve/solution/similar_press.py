@@ -27,7 +27,7 @@ Found = Sequence[tuple[float, Floats]]
 
 @dataclass(frozen=True)
 class Equilibria:
-    """Of one press at n places, element by element, so that any numbering of the unknowns can read them.
+    """Equilibria of one press at n places, element by element, so that any numbering of the unknowns can read them.
 
     places : (n,), ascending. displacement_m : (n, m, 10, 3) of the nodes of the tetrahedra. pressure_Pa : (n, m, 4) of
     their corners. contact_Pa : (n, k, 6) of the nodes of the contact's facets. What acts in one place only, a glue or
@@ -41,15 +41,15 @@ class Equilibria:
 
     @classmethod
     def of(cls, system: System, tet_mesh: TetMesh, found: Found) -> "Equilibria":
-        """Of places, which ascend, and unknowns."""
-        displacement, pressure, contact = _numbers(system, tet_mesh)
+        """Equilibria of a system, of places, which ascend, and the unknowns there."""
+        displacement, pressure, contact = _unknowns_by_element(system, tet_mesh)
         course, units = Course.of(found), system.units
         known = np.column_stack([course.unknowns, np.zeros(len(found))])  # index -1, a prescribed value, reads zero
         return cls(course.places, known[:, displacement] * units.length, known[:, pressure] * units.stress,
                    known[:, contact] * units.stress)  # fmt: skip
 
-    def unfolded(self, axes: Planes) -> "Equilibria":
-        """On the elements of mesh.symmetry.mirrored_mesh about these planes."""
+    def unfold(self, axes: Planes) -> "Equilibria":
+        """The equilibria on the elements of mesh.symmetry.mirrored_mesh about these planes."""
         moved, pressure, contact = self.displacement_m, self.pressure_Pa, self.contact_Pa
         for axis in axes:
             sign = np.ones(3)
@@ -60,8 +60,8 @@ class Equilibria:
         return Equilibria(self.places, moved, pressure, contact)
 
     def course(self, system: System, tet_mesh: TetMesh) -> "Course | None":
-        """For another system on these elements; None on other ones, such as a slice in the place of a solid."""
-        numbers, units = _numbers(system, tet_mesh), system.units
+        """Unknowns of another system on these elements; None on other ones, such as a slice in the place of a solid."""
+        numbers, units = _unknowns_by_element(system, tet_mesh), system.units
         known = self.displacement_m / units.length, self.pressure_Pa / units.stress, self.contact_Pa / units.stress
         if any(values.shape[1:] != place.shape for place, values in zip(numbers, known, strict=True)):
             return None
@@ -71,34 +71,34 @@ class Equilibria:
         return Course(self.places, found[:, :-1])
 
 
-def _numbers(system: System, tet_mesh: TetMesh) -> tuple[Ints, Ints, Ints]:
-    """Of the unknowns by element: (m, 10, 3), (m, 4) and (k, 6)."""
+def _unknowns_by_element(system: System, tet_mesh: TetMesh) -> tuple[Ints, Ints, Ints]:
+    """Numbers of the unknowns by element: displacements (m, 10, 3), pressures (m, 4) and contact pressures (k, 6)."""
     numbers = system.unknowns
     return numbers.displacement[tet_mesh.tets], numbers.pressure, numbers.contact[tet_mesh.facets["contact"]]
 
 
 @dataclass(frozen=True)
 class Course:
-    """Of a similar press: unknowns (n, count) at places (n,), which ascend."""
+    """Course of a similar press: unknowns (n, count) at places (n,), which ascend."""
 
     places: Floats
     unknowns: Floats
 
     @classmethod
     def of(cls, found: Found) -> "Course":
-        """That was found at ascending places."""
+        """Course of places, which ascend, and the unknowns (count,) there."""
         places, unknowns = zip(*found, strict=True)
         return cls(np.array(places), np.array(unknowns))
 
     def at(self, place: float) -> Floats:
-        """Between two places on the straight line."""
+        """Unknowns (count,) at a place, on the straight line between the two beside it."""
         i = int(np.clip(np.searchsorted(self.places, place), 1, len(self.places) - 1))
         before, after = self.places[i - 1 : i + 1]
         share = (place - before) / (after - before)
         return np.asarray((1.0 - share) * self.unknowns[i - 1] + share * self.unknowns[i])
 
     def guess(self, found: Found, place: float) -> Floats:
-        """The unknowns (count,) there: those of this course, and the difference of the last two found, carried on."""
+        """Unknowns (count,) at a place: those of this course, and the difference of the last two found, carried on."""
         (last, x), *before = found[:-3:-1]
         off = x - self.at(last)
         for earlier, y in before:
@@ -106,8 +106,8 @@ class Course:
         return np.asarray(self.at(place) + off)
 
 
-def combined(*weighed: tuple[float, Course]) -> Course:
-    """The weighed sum, at the places of the first."""
+def weighted_sum(*weighed: tuple[float, Course]) -> Course:
+    """Weighted sum of courses, at the places of the first."""
     places = weighed[0][1].places
     return Course(places, np.array([sum(weight * course.at(place) for weight, course in weighed) for place in places]))
 
@@ -115,7 +115,9 @@ def combined(*weighed: tuple[float, Course]) -> Course:
 def reach(
     system: System, linear: LinearSolver, past: list[State], target: Target, kink: bool, guess: Floats | None
 ) -> str | None:
-    """At once from a guess (count,) beside the equilibrium, else by marching; as solve.solution.march.march."""
+    """Reach a target at once from a guess (count,) beside the equilibrium, else by march, and return what that
+    returns.
+    """
     if guess is not None:
         with suppress(NoEquilibriumError):
             state = equilibrate(system, linear, guess, target.load, target.time, past[-1])

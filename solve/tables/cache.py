@@ -19,11 +19,11 @@ from solve.tables.depth_press import DepthPress
 def key(job: DepthPress) -> str:
     """Hash of model, mesh, depth, places, and the source of all that presses."""
     asked = repr((job.depth_mm, job.shares, job.back, job.parts))
-    return data_hash([source_hash(DepthPress.__module__), _told(job.model), mesh_hash(job.tet_mesh), asked])
+    return data_hash([source_hash(DepthPress.__module__), _model_content(job.model), mesh_hash(job.tet_mesh), asked])
 
 
-def _told(model: Model) -> dict[str, Any]:
-    """What of the model a press depends on."""
+def _model_content(model: Model) -> dict[str, Any]:
+    """Content of the model that a press depends on."""
     return {
         "segment": model.segment.model_dump(mode="json"),
         "dot": model.dot.model_dump(mode="json", exclude={"gap_mm"}),
@@ -38,19 +38,19 @@ def recall(name: str) -> Floats | None:
 
 
 def keep(name: str, table: Floats) -> None:
-    """Write the file whole; a cache that cannot be written is no cache."""
+    """Write a table under its name, whole; a cache that cannot be written is no cache."""
     with suppress(OSError):
         write_arrays(_path(name), {"table": table})
 
 
 @lru_cache(maxsize=2)
-def equilibria(name: str) -> Equilibria | None:
-    """Those kept under the name of a press, None where there are none."""
+def recall_equilibria(name: str) -> Equilibria | None:
+    """Equilibria kept under the name of a press, None where there are none."""
     return read_arrays(_path(name, "equilibria"), lambda data: Equilibria(**{key: data[key] for key in data}))
 
 
 def keep_equilibria(name: str, found: Equilibria) -> None:
-    """As keep."""
+    """Write equilibria under the name of their press; a cache that cannot be written is no cache."""
     with suppress(OSError):
         write_arrays(_path(name, "equilibria"), vars(found))
 

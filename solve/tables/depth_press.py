@@ -41,8 +41,9 @@ class DepthPress:
     guides: bool = False
     guided_by: str = ""
 
-    def run(self, near: Equilibria | None = None) -> tuple[Floats, Equilibria | None]:
-        """Outputs (n + b r, 2 + e): force in N, contact area in m2, charges in C; down, then way back by way back.
+    def solve(self, near: Equilibria | None = None) -> tuple[Floats, Equilibria | None]:
+        """Solve the press: outputs (n + b r, 2 + e), force in N, contact area in m2, charges in C; down, then way back
+        by way back.
 
         Also, where it guides, the equilibria at rest and on the way down. near : those of a similar press.
         NoEquilibriumError.
@@ -50,7 +51,7 @@ class DepthPress:
         setup = _set_up(self)
         linear = LinearSolver(setup.system.factorisation_shift)
         try:
-            outputs, found = _walk(self, setup, linear, near)
+            outputs, found = _press_all(self, setup, linear, near)
         finally:
             linear.close()
         return outputs, Equilibria.of(setup.system, setup.tet_mesh, found) if self.guides else None
@@ -61,30 +62,31 @@ def _set_up(job: DepthPress) -> Setup:
     return discretise(model, job.tet_mesh, resolve_dot(model.dot, model.segment))
 
 
-def _walk(
+def _press_all(
     job: DepthPress, setup: Setup, linear: LinearSolver, near: Equilibria | None
 ) -> tuple[Floats, list[tuple[float, Floats]]]:
+    """Press to all shares, and back from some: outputs, and the unknowns at each place on the way down."""
     start = Target(0.0, Load((0.0, 0.0), 0.0), True)
     rest = rest_state(setup.system, linear, start)
     setup.recorder.start(rest)
     places = 0.0, *job.shares
-    beside = near.unfolded(setup.unfolded).course(setup.system, setup.tet_mesh) if near is not None else None
+    beside = near.unfold(setup.unfolded).course(setup.system, setup.tet_mesh) if near is not None else None
     past, found, down, back = [rest], [(0.0, rest.x)], list[Floats](), list[Floats]()
     for number, (before, share) in enumerate(pairwise(places)):
         for place in np.linspace(before, share, job.parts + 1)[1:]:
-            _go(setup, linear, past, place, beside.guess(found, place) if beside else None)
+            _press_to(setup, linear, past, place, beside.guess(found, place) if beside else None)
             found.append((place, past[-1].x))
         down.append(_outputs(setup, past))
         if number in job.back:
             returning = past[-1:]
             for part in RETURN:
-                _go(setup, linear, returning, part * share)
+                _press_to(setup, linear, returning, part * share)
                 back.append(_outputs(setup, returning))
     return np.array([*down, *back]), found
 
 
-def _go(setup: Setup, linear: LinearSolver, past: list[State], share: float, guess: Floats | None = None) -> None:
-    """To a share of the depth; past is extended. NoEquilibriumError."""
+def _press_to(setup: Setup, linear: LinearSolver, past: list[State], share: float, guess: Floats | None = None) -> None:
+    """Press to a share of the depth; past is extended. NoEquilibriumError."""
     target = Target(past[-1].time + 1.0, Load((0.0, 0.0), share * setup.full_drive), True)
     failure = reach(setup.system, linear, past, target, True, guess)
     if failure is not None:
@@ -92,6 +94,7 @@ def _go(setup: Setup, linear: LinearSolver, past: list[State], share: float, gue
 
 
 def _outputs(setup: Setup, past: Sequence[State]) -> Floats:
+    """Force in N, contact area in m2 and charges in C of the last state, (2 + e,)."""
     setup.recorder.record(past[-1], past[-2] if len(past) > 1 else past[-1])
     record = setup.recorder.records.pop()
     return np.array([record.contact_force_N[2], record.contact_area_m2, *record.film_charge_C])

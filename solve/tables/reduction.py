@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from geometry.dot_at_rest import resolve_dot
 from mesh.types import TetMesh
 from solve.model import Model
-from solve.reduced.build import keep_reduced, reduced
+from solve.reduced.build import keep_model, recall_or_build
 from solve.reduced.model import ReducedModel
 from solve.reduced.task import ReductionTask
 
@@ -27,11 +27,11 @@ class Reduction:
 
     def made(self) -> ReducedModel:
         """Pressed, or recalled. NoEquilibriumError."""
-        return reduced(self._task, check=False)
+        return recall_or_build(self._task, check=False)
 
     def keep(self, made: ReducedModel) -> None:
         """Have it recalled here where it was made elsewhere."""
-        keep_reduced(self._task, False, made)
+        keep_model(self._task, False, made)
 
     @property
     def _task(self) -> ReductionTask:

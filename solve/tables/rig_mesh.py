@@ -39,39 +39,39 @@ def rig_mesh(
     """
     options = options.model_copy(update={"film_layers": 1, "file": None})
     if model.segment.effector is not None and model.segment.effector.shape == "dome":
-        return _under_a_dome(model, options.model_copy(update={"coarsen": coarsen}), largest)
+        return _dome_mesh(model, options.model_copy(update={"coarsen": coarsen}), largest)
     options = options.model_copy(update={"mesher": "layered"})
     while True:
-        made, count = _made(model, options)
+        made, count = _build_mesh(model, options)
         if count <= largest or options.contact_element_size_mm > model.segment.length_mm:
             return made, options
         options = options.scale_sizes(max(COARSER, 0.7 * (count / largest) ** (1.0 / 3.0)))
 
 
-def _under_a_dome(model: Model, options: MeshOptions, largest: int) -> tuple[TetMesh, MeshOptions]:
+def _dome_mesh(model: Model, options: MeshOptions, largest: int) -> tuple[TetMesh, MeshOptions]:
     """A mesh of a dome by the user's mesher: coarser in few attempts, as each takes seconds."""
-    made, count = _made(model, options)
+    made, count = _build_mesh(model, options)
     while count > largest:
         coarser = options.scale_sizes(max(COARSER, (count / largest) ** 0.6))  # nodes grow with size to about -1.7
-        other, fewer = _made(model, coarser)
+        other, fewer = _build_mesh(model, coarser)
         if fewer > SAVES * count:
             break
         made, count, options = other, fewer, coarser
     return made, options
 
 
-def _made(model: Model, options: MeshOptions) -> tuple[TetMesh, int]:
-    """The mesh, a half or a quarter where all is symmetric, and how many nodes the whole has.
+def _build_mesh(model: Model, options: MeshOptions) -> tuple[TetMesh, int]:
+    """A mesh, a half or a quarter where all is symmetric, and how many nodes the whole has.
 
     Those on both sides of an interface count once.
     """
-    dot = _resting(model)
+    dot = _dot_without_gap(model)
     try:
         made = build(model.segment, dot, options, meshed_planes(model, dot, options))
     except MeshingError:
         if not options.coarsen:
             raise
-        return _made(model, options.model_copy(update={"coarsen": False}))  # coarsening may leave flat elements
+        return _build_mesh(model, options.model_copy(update={"coarsen": False}))  # coarsening may leave flat elements
     return made, len(np.unique(mirrored_mesh(made).tet_mesh.twin))
 
 
@@ -96,7 +96,7 @@ def mesh_of(model: Model, known: Model, tet_mesh: TetMesh, options: MeshOptions,
     return morphed_mesh(tet_mesh, known.segment, model.segment)
 
 
-def _resting(model: Model) -> DotShape:
+def _dot_without_gap(model: Model) -> DotShape:
     """The dot as it touches: a gap makes no other mesh."""
     dot = resolve_dot(model.dot, model.segment)
     return replace(dot, origin_mm=dot.origin_mm - [0.0, 0.0, model.dot.gap_mm])

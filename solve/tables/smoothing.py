@@ -17,7 +17,7 @@ from foundation.arrays import Floats
 PRESSED = tuple(float(k / 16) ** 1.5 for k in range(2, 17))
 """Of the depth, at which a press is seen that is to be smoothed: closer where the contact is small."""
 DEGREES = range(3, 7)
-LITTLE = 0.1  # of the largest charge per force: a charge that changes sign is not relative to itself
+SMALL_CHARGE_SHARE = 0.1  # of the largest charge per force: a charge that changes sign is not relative to itself
 
 
 @dataclass(frozen=True)
@@ -47,24 +47,26 @@ def smooth(shares: Sequence[float], outputs: Floats) -> Smooth:
     touching = (outputs[:, 0] > 0.0) & (outputs[:, 1] > 0.0)
     x, y = np.asarray(shares)[touching], outputs[touching]
     weight = np.sqrt(x)  # waves are largest where few nodes touch
-    logarithms = [_fitted(np.log(x), np.log(y[:, n]), weight) for n in (0, 1)]
-    per_force = [_fitted(x, charge / y[:, 0], weight) for charge in y[:, 2:].T]
+    logarithms = [_fit_polynomial(np.log(x), np.log(y[:, n]), weight) for n in (0, 1)]
+    per_force = [_fit_polynomial(x, charge / y[:, 0], weight) for charge in y[:, 2:].T]
     found = Smooth((logarithms[0], logarithms[1]), tuple(per_force), float(x[0]), np.zeros(y.shape[1]))
     curves = found.at(x)
     size = np.abs(curves)
     size[:, 2:] = size[:, 2:].max(axis=1, keepdims=True)
-    size[:, 2:] = np.maximum(size[:, 2:], LITTLE * size[:, :1] * np.abs(curves[:, 2:] / curves[:, :1]).max())
+    largest_C_per_N = np.abs(curves[:, 2:] / curves[:, :1]).max()
+    size[:, 2:] = np.maximum(size[:, 2:], SMALL_CHARGE_SHARE * size[:, :1] * largest_C_per_N)
     waves = ((weight[:, None] * (y - curves) / np.maximum(size, 1e-300)) ** 2).sum(axis=0) / (weight**2).sum()
     terms = np.array([len(curve) for curve in (*logarithms, *per_force)])
     return replace(found, error=np.sqrt(waves * terms / len(x)))
 
 
-def _fitted(x: Floats, y: Floats, weight: Floats) -> Polynomial:
-    """Of the degree with the least leave-one-out error."""
-    return min((_of_degree(x, y, weight, degree) for degree in DEGREES), key=lambda found: found[0])[1]
+def _fit_polynomial(x: Floats, y: Floats, weight: Floats) -> Polynomial:
+    """Polynomial of the degree with the least leave-one-out error."""
+    return min((_fit_of_degree(x, y, weight, degree) for degree in DEGREES), key=lambda found: found[0])[1]
 
 
-def _of_degree(x: Floats, y: Floats, weight: Floats, degree: int) -> tuple[float, Polynomial]:
+def _fit_of_degree(x: Floats, y: Floats, weight: Floats, degree: int) -> tuple[float, Polynomial]:
+    """Leave-one-out error of a polynomial of this degree, and the polynomial."""
     curve = Polynomial.fit(x, y, degree, w=weight)
     offset, scale = curve.mapparms()
     basis = np.linalg.qr(weight[:, None] * chebyshev.chebvander(offset + scale * x, degree))[0]

@@ -14,7 +14,7 @@ SEEN: Floats = np.linspace(0.2, 1.0, 9)
 
 
 def accuracy(middle: Smooth, fine: Smooth, ratio: float) -> dict[str, float]:
-    """One sigma of force, voltage and displacement, each relative to itself; voltages to the largest of them.
+    """Standard deviation of force, voltage and displacement, each relative to itself; voltages to the largest of them.
 
     middle, fine : presses on two meshes; ratio : finer over coarser element size. Where the error falls with the
     square of the size, that of the finer mesh is r^2 / (1 - r^2) of the difference (Richardson); beside it stands the

@@ -18,7 +18,7 @@ TRUSTED = 0.5, 2.0  # by which a finer mesh may change an answer
 
 
 def change(base: Floats, other: Floats) -> Floats:
-    """(n, 2 + e) from outputs of two presses at the same depths: logarithms of factors, and C per N."""
+    """Change (n, 2 + e) between outputs of two presses at the same depths: logarithms of factors, and C per N."""
     factors = np.log(np.maximum(other[:, :2] / np.maximum(base[:, :2], 1e-300), LEAST_FACTOR))
     return np.concatenate([factors, (other[:, 2:] - base[:, 2:]) / np.maximum(base[:, :1], 1e-300)], axis=1)
 
@@ -49,7 +49,9 @@ def replaced(fit: ResponseTable, outputs: Floats) -> ResponseTable:
 
 
 def _with_elastic(fit: ResponseTable, outputs: Floats, factors: Floats, charge_factor: float) -> ResponseTable:
-    """What layers remember of force and area goes by factors (cells + 1, 2), of charges in proportion on the whole."""
+    """The table with other elastic outputs. What layers remember of force and area goes by factors (cells + 1, 2), of
+    charges in proportion on the whole.
+    """
     table, charges = fit.table.copy(), slice(2, outputs.shape[1])
     own = table[:, 0, charges]
     size = np.maximum((own**2).sum(axis=0), 1e-300)

@@ -15,7 +15,7 @@ from solve.tables.reduction import Reduction
 
 
 def answer(job: DepthPress | Reduction) -> Floats | ReducedModel | str:
-    """Outputs, a reduced model, or why there is none."""
+    """Answer of a job: outputs, a reduced model, or a sentence why there is none."""
     try:
         return job.made() if isinstance(job, Reduction) else _outputs_of(job)
     except (NoEquilibriumError, ValueError) as error:
@@ -23,8 +23,8 @@ def answer(job: DepthPress | Reduction) -> Floats | ReducedModel | str:
 
 
 def _outputs_of(job: DepthPress) -> Floats:
-    """Outputs; equilibria are left where other presses find them."""
-    outputs, found = job.run(cache.equilibria(job.guided_by) if job.guided_by else None)
+    """Outputs of a press; its equilibria are left where other presses find them."""
+    outputs, found = job.solve(cache.recall_equilibria(job.guided_by) if job.guided_by else None)
     if found is not None:
         cache.keep_equilibria(cache.key(job), found)
     return outputs
@@ -52,7 +52,7 @@ def run_all(
     missing |= dict(left)
     if missing:
         report(WHAT, 0, len(missing))
-    places = executor if _worth(missing) else HERE
+    places = executor if _are_worth_processes(missing) else HERE
     calls = {name: (job,) for name, job in missing.items()}
     for number, (name, future) in enumerate(completed_calls(places, answer, calls), start=1):
         job, outputs = missing[name], future.result()
@@ -68,11 +68,11 @@ def run_all(
 
 
 def _effort(job: DepthPress) -> float:
-    """What a press takes, roughly: steps down and back, of which slip takes as many more, by nodes."""
+    """Rough effort of a press: steps down and back, of which slip takes as many more, by nodes."""
     return len(job.tet_mesh.points_mm) * job.parts * (len(job.shares) + len(job.back) * len(RETURN))
 
 
-def _worth(jobs: Mapping[str, DepthPress | Reduction]) -> bool:
+def _are_worth_processes(jobs: Mapping[str, DepthPress | Reduction]) -> bool:
     """Whether these presses take longer than two processes to start."""
     large = sum(isinstance(job, Reduction) or len(job.tet_mesh.points_mm) > LARGE for job in jobs.values())
     return max(large, len(jobs) // WORTH_A_PROCESS) > 1

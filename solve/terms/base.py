@@ -77,7 +77,9 @@ class Term(ABC):
         return np.zeros(0, bool)
 
     def elements_in(self, trial: Trial, status: Bools) -> Iterator[Block] | None:
-        """As elements, with constraints in these states in place of the trial's own; None where there is no way."""
+        """Blocks as of elements, with constraints in these states (d,) in place of the trial's own; None where a term
+        has no way.
+        """
         return None
 
     def touches(self, status: Bools) -> bool:
@@ -93,7 +95,9 @@ class Term(ABC):
         return np.zeros(3)
 
     def contact_traction(self, trial: Trial) -> Floats:
-        """Of the dot on the surface, per undeformed area, at nodes of the contact facets (c, 3); none: zeros (3,)."""
+        """Traction (c, 3) of the dot on the surface, per undeformed area, at nodes of the contact facets; (3,) zeros
+        for none.
+        """
         return np.zeros(3)
 
     def constraints(self) -> tuple[Ints, Floats]:

@@ -16,7 +16,7 @@ import numpy as np
 
 from foundation.arrays import Floats, Ints
 from solve.fem.quadrature import triangle
-from solve.materials.inelastic import Inelastic, StressResponse, at_rest, respond, time_error
+from solve.materials.inelastic import Inelastic, StressResponse, respond, rest_memories, time_error
 from solve.terms.base import Block, History, Term, Trial
 from solve.terms.jump import Jump, MatchedFacets, matched_facets
 
@@ -37,7 +37,7 @@ class BondSprings(Term):
 
     def start(self) -> History:
         """Memory of every inelastic law, of d and d . n at the quadrature points."""
-        return at_rest(self.inelastic, self.facets.area.size, 4)
+        return rest_memories(self.inelastic, self.facets.area.size, 4)
 
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
         """Matrices (k, w, w) and residuals (k, w) of the facets."""

@@ -14,7 +14,7 @@ from solve.units import Units
 
 @dataclass(frozen=True)
 class Builder:
-    """points : (n, 3) nodes in solver units. numbers : hands out more unknowns.
+    """Parts from which terms are built. points : (n, 3) nodes in solver units. numbers : hands out more unknowns.
 
     contact : geometry of the contact with the dot. share : what is meshed of the whole segment, and so of all that
     acts on the dot. force_driven : a force drives the dot, else a displacement.
@@ -33,7 +33,7 @@ class Builder:
 
     @property
     def film_material(self) -> PiezoelectricFilm:
-        """TypeError when the film's material is none of a film."""
+        """Material of the film. TypeError when it is none of a film."""
         film = self.materials["film"]
         if not isinstance(film, PiezoelectricFilm):
             raise TypeError(f"the film needs a piezoelectric-film material, not {film.model}")
@@ -41,7 +41,7 @@ class Builder:
 
     @property
     def MPa(self) -> float:
-        """One, in solver units."""
+        """One MPa in solver units."""
         return 1e6 / self.units.stress
 
     def per_area(self, stiffness_N_per_mm3: float) -> float:

@@ -53,7 +53,7 @@ class Circuit(Term):
         return charge + capacitance * (now - np.exp(-a) * voltage) / phi, capacitance / phi
 
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
-        """What is missing in the film's own row."""
+        """Charge that the circuit takes from the row of the film's voltage."""
         charge, slope = self._balance(trial, history)
         residual = self.film_capacitance * float(trial.x[self.voltage_dof]) - charge
         yield Block(0, slice(0, 1), np.array([[[self.film_capacitance - slope]]]), np.array([[residual]]))
@@ -64,7 +64,7 @@ class Circuit(Term):
 
 
 @dataclass(frozen=True)
-class Tied(Term):
+class TiedInputs(Term):
     """Inputs that capacitances tie together; matrix : (k, k) of them between k voltages, in solver units."""
 
     voltage_dofs: Ints
@@ -76,6 +76,6 @@ class Tied(Term):
         return (self.voltage_dofs[None, :],)
 
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
-        """What they take from the rows of the voltages."""
+        """Charges that the capacitances between the inputs take from the rows of the voltages."""
         charge = self.matrix @ trial.x[self.voltage_dofs]
         yield Block(0, slice(0, 1), -self.matrix[None], -charge[None])

@@ -65,7 +65,7 @@ class ContactFacets(Term):
 
     @property
     def nodal_area(self) -> Floats:
-        """int phi_i dA, shape (c,)."""
+        """Area int phi_i dA of each node, (c,)."""
         return self._sum(np.einsum("kq,qi->ki", self.area, HATS))
 
     def _sum(self, local: Floats) -> Floats:
@@ -80,11 +80,11 @@ class ContactFacets(Term):
         return gap.reshape(shape), normal.reshape(*shape, 3), hessian.reshape(*shape, 3, 3)
 
     def weighted_gap(self, displacement: Floats, move: Floats) -> Floats:
-        """g_i, shape (c,), at nodal displacements (n, 3) and the dot displaced by move (3,)."""
-        return self._weighted(self._at_quadrature(displacement, move)[0])
+        """Weighted gaps g_i (c,) at nodal displacements (n, 3) and the dot displaced by move (3,)."""
+        return self._weighted_gaps(self._at_quadrature(displacement, move)[0])
 
-    def _weighted(self, gap: Floats) -> Floats:
-        """g_i (c,) from the gap (k, q) at the quadrature points."""
+    def _weighted_gaps(self, gap: Floats) -> Floats:
+        """Weighted gaps g_i (c,) from the gap (k, q) at the quadrature points."""
         return self._sum(np.einsum("kq,qi,kq->ki", self.area, HATS, gap))
 
     def mean_gap(self, displacement: Floats, move: Floats) -> Floats:
@@ -92,19 +92,19 @@ class ContactFacets(Term):
         return self.weighted_gap(displacement, move) / self.nodal_area
 
     def constraints(self) -> tuple[Ints, Floats]:
-        """The contact pressures."""
+        """Contact pressures (c,) and nodal areas (c,)."""
         return self.pressure_dofs, self.nodal_area
 
     def status(self, trial: Trial, history: History) -> Bools:
         """Nodes in contact (c,)."""
-        return self.closed(trial)
+        return self.closed_nodes(trial)
 
     def touches(self, status: Bools) -> bool:
         """Whether any node is in contact."""
         return bool(status.any())
 
     def load_norm(self, trial: Trial, forces: Floats) -> float:
-        """Of the contact forces."""
+        """Norm of the contact forces."""
         return float(np.linalg.norm(forces))
 
     def dot_force(self, trial: Trial) -> Floats:
@@ -118,22 +118,22 @@ class ContactFacets(Term):
         force = np.einsum("kq,qi,kq,kqa->kia", self.area, HATS, lam, normal)
         return np.column_stack([self._sum(part) for part in np.moveaxis(force, -1, 0)]) / self.nodal_area[:, None]
 
-    def closed(self, trial: Trial) -> Bools:
-        """Nodes in contact: lambda_i - c g_i > 0, shape (c,) bool."""
-        return self._pressed(trial, self._at_quadrature(trial.displacement, trial.move)[0])
+    def closed_nodes(self, trial: Trial) -> Bools:
+        """Whether each node (c,) is in contact: lambda_i - c g_i > 0."""
+        return self._active_nodes(trial, self._at_quadrature(trial.displacement, trial.move)[0])
 
-    def _pressed(self, trial: Trial, gap: Floats) -> Bools:
-        """Nodes in contact (c,) from the gap (k, q) at the quadrature points."""
-        mean_gap = self._weighted(gap) / self.nodal_area
+    def _active_nodes(self, trial: Trial, gap: Floats) -> Bools:
+        """Whether each node (c,) is in contact, from the gap (k, q) at the quadrature points."""
+        mean_gap = self._weighted_gaps(gap) / self.nodal_area
         return np.asarray(trial.x[self.pressure_dofs] - ACTIVE_SET_STIFFNESS * mean_gap > 0.0)
 
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
-        """-sum lambda_i g_i over the active nodes; -lambda_i = 0 in the rows of the others."""
+        """Blocks of the facets, -sum lambda_i g_i over the active nodes, and of the others' rows, -lambda_i = 0."""
         distance = self._at_quadrature(trial.displacement, trial.move)
-        return self._blocks(trial, distance, self._pressed(trial, distance[0]))
+        return self._blocks(trial, distance, self._active_nodes(trial, distance[0]))
 
     def elements_in(self, trial: Trial, status: Bools) -> Iterator[Block]:
-        """As elements, with these nodes in contact."""
+        """Blocks as of elements, with these nodes (c,) in contact."""
         return self._blocks(trial, self._at_quadrature(trial.displacement, trial.move), status)
 
     def _blocks(self, trial: Trial, distance: tuple[Floats, Floats, Floats], active: Bools) -> Iterator[Block]:

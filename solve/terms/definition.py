@@ -40,7 +40,7 @@ class TermDefinition(ABC):
 
     @abstractmethod
     def build(self, make: Builder) -> Iterator[Term]:
-        """Its terms. One of the rig builds none where make.unknowns.approach is -1, prescribed."""
+        """Build its terms. One of the rig builds none where make.unknowns.approach is -1, prescribed."""
 
     def force_N(self, motion: Motion) -> Floats:
         """Force (t,) in N that the sensor carries beside the segment's where the dot's path is prescribed."""

@@ -29,27 +29,27 @@ class Coverage:
     electrodes: int
 
     def integral(self, density: Floats) -> Floats:
-        """Of a density at the quadrature points (m, q) over the volume under each electrode, (e,)."""
+        """Integral (e,) of a density at the quadrature points (m, q) over the volume under each electrode."""
         part = (density[self.element] * self.weight).sum(axis=1)
         return np.bincount(self.electrode, part, self.electrodes).astype(np.float64)
 
     def volume(self) -> Floats:
-        """Under each electrode (e,)."""
+        """Volume (e,) under each electrode."""
         return np.bincount(self.electrode, self.weight.sum(axis=1), self.electrodes).astype(np.float64)
 
 
 def coverage(corners: Floats, points: Floats, weight: Floats, rectangles: Floats) -> Coverage:
-    """Of straight elements with corners (m, 4, 3), quadrature points (m, q, 3) and weights (m, q), under rectangles
-    (e, 4) x0, x1, y0, y1.
+    """Coverage by rectangles (e, 4) x0, x1, y0, y1 of straight elements with corners (m, 4, 3), quadrature points
+    (m, q, 3) and weights (m, q).
     """
-    found = [_under(corners, points, weight, rectangle) for rectangle in rectangles]
+    found = [_elements_under(corners, points, weight, rectangle) for rectangle in rectangles]
     electrode = np.repeat(np.arange(len(rectangles)), [len(element) for element, _ in found])
     element, covered = (np.concatenate(each) for each in zip(*found, strict=True))
     return Coverage(element, electrode, covered, len(rectangles))
 
 
-def _under(corners: Floats, points: Floats, weight: Floats, rectangle: Floats) -> tuple[Ints, Floats]:
-    """Elements under a rectangle (k,) and their weights (k, q)."""
+def _elements_under(corners: Floats, points: Floats, weight: Floats, rectangle: Floats) -> tuple[Ints, Floats]:
+    """Elements under a rectangle x0, x1, y0, y1, (k,), and their weights (k, q)."""
     low, high = corners.min(axis=1)[:, :2], corners.max(axis=1)[:, :2]
     start, end = rectangle[0::2], rectangle[1::2]
     touched = ((high > start) & (low < end)).all(axis=1)
@@ -58,12 +58,12 @@ def _under(corners: Floats, points: Floats, weight: Floats, rectangle: Floats) -
     pieces, owner = corners[cut], np.arange(len(cut))
     for axis, side, sign in ((0, start, 1.0), (0, end, -1.0), (1, start, 1.0), (1, end, -1.0)):
         if np.isfinite(side[axis]):
-            pieces, owner = _clipped(pieces, owner, sign * (pieces[..., axis] - side[axis]))
-    fitted = _fitted(points[cut], weight[cut], pieces, owner)
+            pieces, owner = _clip(pieces, owner, sign * (pieces[..., axis] - side[axis]))
+    fitted = _fit_weights(points[cut], weight[cut], pieces, owner)
     return np.concatenate([np.flatnonzero(whole), cut]), np.concatenate([weight[whole], fitted])
 
 
-def _clipped(corners: Floats, owner: Ints, distance: Floats) -> tuple[Floats, Ints]:
+def _clip(corners: Floats, owner: Ints, distance: Floats) -> tuple[Floats, Ints]:
     """Tetrahedra (k, 4, 3) of the parts where the distances (n, 4) of corners (n, 4, 3) are positive, with the owners
     (k,) of those that they are parts of.
     """
@@ -91,8 +91,8 @@ def _clipped(corners: Floats, owner: Ints, distance: Floats) -> tuple[Floats, In
     return np.concatenate([corner[four], np.stack(tip, axis=1), *prisms]), np.concatenate(owners)
 
 
-def _fitted(points: Floats, weight: Floats, pieces: Floats, owner: Ints) -> Floats:
-    """Weights (n, q) at the points (n, q, 3) of elements with the volume and the first moments of the pieces."""
+def _fit_weights(points: Floats, weight: Floats, pieces: Floats, owner: Ints) -> Floats:
+    """Weights (n, q) at points (n, q, 3) of elements, with the volume and the first moments of the pieces (k, 4, 3)."""
     middle = points.mean(axis=1, keepdims=True)
     size = np.abs(points - middle).max(axis=1, keepdims=True, initial=0.0)
     volume = np.abs(signed_volumes(pieces.reshape(-1, 3), np.arange(4 * len(pieces)).reshape(-1, 4)))

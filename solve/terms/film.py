@@ -11,7 +11,7 @@ from solve.fem.kinematics import deformation_gradient, green_lagrange
 from solve.fem.quadrature import tetrahedron
 from solve.fem.shape_functions import physical_gradients, quadratic
 from solve.materials.film import FilmLaw
-from solve.materials.inelastic import Inelastic, StressResponse, at_rest, respond, time_error
+from solve.materials.inelastic import Inelastic, StressResponse, respond, rest_memories, time_error
 from solve.terms.base import Block, History, Term, Trial
 from solve.terms.electrodes import Coverage, coverage
 from solve.terms.solid import refuse_inversion
@@ -47,12 +47,12 @@ class FilmRegion(Term):
 
     @property
     def electrodes(self) -> int:
-        """Their number."""
+        """Number of the electrodes."""
         return len(self.voltage_dofs)
 
     def start(self) -> History:
         """Memory of every inelastic law at rest."""
-        return at_rest(self.inelastic, self.weight.size)
+        return rest_memories(self.inelastic, self.weight.size)
 
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
         """Element matrices (m, 31, 31), upper triangle, and residuals (m, 31)."""

@@ -110,7 +110,7 @@ class FrictionalContact(Term):
         return self.contact.touches(status[: len(self.contact.pressure_dofs)])
 
     def load_norm(self, trial: Trial, forces: Floats) -> float:
-        """Of pressure and friction."""
+        """Norm of the forces of pressure and friction."""
         return self.contact.load_norm(trial, forces)
 
     def dot_force(self, trial: Trial) -> Floats:
@@ -119,7 +119,7 @@ class FrictionalContact(Term):
         return self.force(trial.displacement, trial.move, pressure, friction)
 
     def contact_traction(self, trial: Trial) -> Floats:
-        """Of pressure and friction."""
+        """Traction (c, 3) of pressure and friction, per undeformed area."""
         return self.contact.contact_traction(trial) + trial.x[self.friction_dofs]
 
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
@@ -168,7 +168,7 @@ class FrictionalContact(Term):
         step = step - (trial.move - trial.previous_move)
         moved = self._free * self._nodal_sum(np.einsum("kq,qi,qn,knj->kij", area, HATS, SHAPES, step, optimize=True))
         n = self._turnable * self._nodal_sum(np.einsum("kq,qi,kqj->kij", area, HATS, gradient, optimize=True))
-        weighted_gap = contact._weighted(gap)
+        weighted_gap = contact._weighted_gaps(gap)
         nodal_area = contact.nodal_area
         length = np.maximum(np.linalg.norm(n, axis=1), 1e-12 * nodal_area)  # opposite flanks may cancel, far away
         augmented = trial.x[contact.pressure_dofs] - ACTIVE_SET_STIFFNESS * weighted_gap / nodal_area
@@ -256,11 +256,11 @@ class DotFriction(TermDefinition):
 
     @property
     def is_off(self) -> bool:
-        """It slips freely."""
+        """Whether the dot slips freely."""
         return self.coefficient == 0.0
 
     def build(self, make: Builder) -> Iterator[Term]:
-        """The contact, with three more multipliers at each of its nodes."""
+        """Build the contact with three more multipliers at each of its nodes."""
         dofs = make.numbers.take(3 * len(make.contact.pressure_dofs)).reshape(-1, 3)
         yield FrictionalContact(make.contact, dofs, self.coefficient)
 
@@ -273,6 +273,7 @@ def _projection_slope(vectors: Floats, normal: Floats, turn: Floats) -> Floats:
 
 
 def _apply(a: Floats, b: Floats) -> Floats:
+    """Products of matrices (..., i, j) and (..., j, k)."""
     product: Floats = np.matmul(a, b)
     return product
 

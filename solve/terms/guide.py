@@ -25,14 +25,14 @@ class GuideFriction(Added):
 
     @property
     def is_off(self) -> bool:
-        """No slider has a force."""
+        """Whether no slider has a force."""
         return not any(self.forces_N)
 
     def force_N(self, motion: Motion) -> Floats:
-        """What its sliders rub."""
-        return self.felt_N(motion.path_mm)
+        """Force (t,) in N of the sliders against the motion of the sensor."""
+        return self.sliding_force_N(motion.path_mm)
 
-    def felt_N(self, path_mm: Floats) -> Floats:
+    def sliding_force_N(self, path_mm: Floats) -> Floats:
         """Force (t,) in N against motion along a path (t,) in mm, none at its first point."""
         path, total = np.ascontiguousarray(path_mm, dtype=np.float64), np.zeros(len(path_mm))
         for force, presliding in zip(self.forces_N, self.presliding_mm, strict=True):
@@ -42,6 +42,7 @@ class GuideFriction(Added):
 
 @nb.njit(cache=True)
 def _slider_force(path, limit, stiffness):  # type: ignore[no-untyped-def]
+    """Force (t,) of one slider along a path (t,), with the most that it carries and its stiffness."""
     force = np.zeros_like(path)
     for n in range(1, len(path)):
         moved = force[n - 1] + stiffness * (path[n] - path[n - 1])

@@ -86,14 +86,14 @@ class MovingMass(TermDefinition):
 
     @property
     def is_off(self) -> bool:
-        """No mass."""
+        """Whether there is no mass."""
         return self.mass_g == 0.0
 
     def build(self, make: Builder) -> Iterator[Term]:
-        """On the approach, where it is unknown."""
+        """Build the mass on the approach, where that is unknown."""
         if make.unknowns.approach >= 0:
             yield MassTerm(make.unknowns.approach, 1e-3 * self.mass_g / make.units.mass * make.share)
 
     def force_N(self, motion: Motion) -> Floats:
-        """F = m a''."""
+        """Force of inertia m a'' (t,) in N."""
         return np.asarray(1e-6 * self.mass_g * motion.acceleration())

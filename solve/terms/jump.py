@@ -47,7 +47,7 @@ class MatchedFacets:
 
     def jump(self, displacement: Floats) -> Jump:
         """The jump at nodal displacements (n, 3)."""
-        z = np.matmul(self._stacked, displacement[self.nodes]).reshape(*self.area.shape, 9)
+        z = np.matmul(self._stacked_rows, displacement[self.nodes]).reshape(*self.area.shape, 9)
         z[..., 3:] += self.tangents
         value, slope, curvature = np.empty(self.area.size), np.empty((z.size // 9, 9)), np.empty((z.size // 9, 9, 9))
         differentiate_opening(z.reshape(-1, 9), value, slope, curvature)
@@ -55,7 +55,7 @@ class MatchedFacets:
         return Jump(z[..., :3], value.reshape(shape), slope.reshape(*shape, 9), curvature.reshape(*shape, 9, 9))
 
     @property
-    def _stacked(self) -> Floats:
+    def _stacked_rows(self) -> Floats:
         return self.rows.reshape(-1, self.rows.shape[2])
 
     def residual(self, gradient: Floats) -> Floats:
@@ -66,7 +66,7 @@ class MatchedFacets:
         """int (dz/du)^t columns, shape (k, 3n, c), of columns (k, q, 9, c)."""
         count, width = len(self.nodes), columns.shape[-1]
         weighted = (columns * self.area[..., None, None]).reshape(count, -1, 3 * width)
-        return np.asarray(np.matmul(self._stacked.T, weighted).reshape(count, -1, width))
+        return np.asarray(np.matmul(self._stacked_rows.T, weighted).reshape(count, -1, width))
 
     def tangent(self, hessian: Floats) -> Floats:
         """int (dz/du)^t hessian dz/du, upper triangle (k, 3n, 3n), of the second derivative by z (k, q, 9, 9)."""

@@ -43,11 +43,11 @@ class RigTerm(Term):
         yield Block(0, slice(0, 1), np.array([[[tangent]]]), np.array([[residual]]))
 
     def load_norm(self, trial: Trial, forces: Floats) -> float:
-        """What drives the dot."""
+        """Magnitude of the force that drives the dot."""
         return abs(self.drive_force(trial))
 
     def drive_force(self, trial: Trial) -> float:
-        """What the rig's force sensor reads, in solver units."""
+        """Reading of the rig's force sensor in solver units."""
         if self.compliance is None:
             return trial.drive
         return (trial.drive - float(trial.x[self.approach_dof])) / self.compliance
@@ -63,16 +63,16 @@ class RigSpring(TermDefinition):
 
     @property
     def frees_dot(self) -> bool:
-        """Where it gives way."""
+        """Whether the rig gives way, so that the dot's approach is unknown."""
         return not self.is_off
 
     @property
     def is_off(self) -> bool:
-        """The rig is rigid."""
+        """Whether the rig is rigid."""
         return self.compliance_mm_per_N == 0.0
 
     def build(self, make: Builder) -> Iterator[Term]:
-        """The spring, where a displacement drives."""
+        """Build the spring, where a displacement drives."""
         if not (make.force_driven or self.is_off):
             compliance = 1e-3 * self.compliance_mm_per_N * make.units.force / make.units.length / make.share
             yield RigTerm(make.unknowns.approach, compliance)

@@ -15,7 +15,7 @@ from solve.fem.kinematics import cauchy_green, deformation_gradient, smallest_ja
 from solve.fem.mixed_solid import mixed_solid
 from solve.fem.quadrature import tetrahedron
 from solve.fem.shape_functions import linear, physical_gradients, quadratic
-from solve.materials.inelastic import Inelastic, Memory, StressResponse, at_rest, respond, time_error
+from solve.materials.inelastic import Inelastic, Memory, StressResponse, respond, rest_memories, time_error
 from solve.materials.laws import MediumLaw
 from solve.terms.base import Block, History, Term, Trial
 
@@ -59,7 +59,7 @@ class SolidRegion(Term):
 
     def start(self) -> History:
         """Memory of every inelastic law at rest."""
-        return at_rest(self.inelastic, self.weight.size)
+        return rest_memories(self.inelastic, self.weight.size)
 
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
         """Element matrices and residuals, chunk by chunk. InvertedElementError."""

@@ -39,7 +39,7 @@ class UnilateralInterface(Term):
 
     @property
     def nodal_area(self) -> Floats:
-        """int phi_i dA, shape (c,)."""
+        """Area int phi_i dA of each node, (c,)."""
         return self._sum(np.einsum("kq,kqi->ki", self.facets.area, self.hats))
 
     def _sum(self, local: Floats) -> Floats:
@@ -49,30 +49,33 @@ class UnilateralInterface(Term):
         return np.asarray(total, dtype=np.float64)
 
     def weighted_opening(self, displacement: Floats) -> Floats:
-        """g_i, shape (c,), at nodal displacements (n, 3)."""
-        return self._weighted(self.facets.jump(displacement).opening)
+        """Weighted openings g_i (c,) at nodal displacements (n, 3)."""
+        return self._weighted_openings(self.facets.jump(displacement).opening)
 
-    def _weighted(self, opening: Floats) -> Floats:
-        """int phi_i opening dA, shape (c,), of an opening (k, q)."""
+    def _weighted_openings(self, opening: Floats) -> Floats:
+        """Weighted openings int phi_i opening dA (c,) of an opening (k, q)."""
         return self._sum(np.einsum("kqi,kq->ki", self.hats, self.facets.area * opening))
 
     def constraints(self) -> tuple[Ints, Floats]:
-        """The pressures."""
+        """Pressures (c,) and nodal areas (c,)."""
         return self.multipliers, self.nodal_area
 
     def status(self, trial: Trial, history: History) -> Bools:
-        """Closed nodes (c,): lambda_i - c g_i >= 0. The faces touch at rest."""
-        return self._closed(trial, self.weighted_opening(trial.displacement))
+        """Whether each node (c,) is closed: lambda_i - c g_i >= 0. The faces touch at rest."""
+        return self._closed_nodes(trial, self.weighted_opening(trial.displacement))
 
-    def _closed(self, trial: Trial, gap: Floats) -> Bools:
+    def _closed_nodes(self, trial: Trial, gap: Floats) -> Bools:
+        """Whether each node (c,) is closed, from the weighted openings (c,)."""
         return np.asarray(trial.x[self.multipliers] - ACTIVE_SET_STIFFNESS * gap / self.nodal_area >= -ADHESION)
 
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
-        """Facets: -sum lambda_i g_i over closed nodes. Nodes: -lambda_i^2 / 2 over open ones."""
+        """Blocks of the facets, -sum lambda_i g_i over closed nodes, and of the nodes, -lambda_i^2 / 2 over
+        open ones.
+        """
         return self._blocks(trial, self.status(trial, history))
 
     def elements_in(self, trial: Trial, status: Bools) -> Iterator[Block]:
-        """As elements, with these nodes closed."""
+        """Blocks as of elements, with these nodes (c,) closed."""
         return self._blocks(trial, status)
 
     def _blocks(self, trial: Trial, closed: Bools) -> Iterator[Block]:

@@ -34,7 +34,7 @@ class QuadraticInput:
     k_per_V2: float
     place: ClassVar[int] = INPUT
 
-    def applied(self, time_s, voltage_V):
+    def apply(self, time_s, voltage_V):
         found = np.asarray(voltage_V, dtype=float).copy()
         for _ in range(60):
             found -= (found * (1 + self.k_per_V2 * found**2) - voltage_V) / (1 + 3 * self.k_per_V2 * found**2)
@@ -134,7 +134,7 @@ def test_a_diagnosis_names_it(tmp_path, monkeypatch):
         head = path.read_text(encoding="utf-8").split("\n")[0]
         samples = np.loadtxt(path, delimiter=",", skiprows=1)
         column = head.split(",").index("voltage_V")
-        samples[:, column] = QuadraticInput(K_PER_V2).applied(samples[:, 0], samples[:, column])
+        samples[:, column] = QuadraticInput(K_PER_V2).apply(samples[:, 0], samples[:, column])
         np.savetxt(path, samples, "%.9g", ",", header=head, comments="")
     engine_for = command.engine_for
 

@@ -37,7 +37,7 @@ def kill_at(step):
 
 @pytest.mark.process
 def test_a_killed_press_ends_as_one_that_was_not(tmp_path, monkeypatch):
-    monkeypatch.setattr(solve.solution.checkpoint, "EVERY_S", 0.0)
+    monkeypatch.setattr(solve.solution.checkpoint, "WRITE_EVERY_S", 0.0)
     file = Checkpoint(tmp_path / "press.npz", "key")
     with pytest.raises(KilledError):
         press(file, kill_at(4))
@@ -57,7 +57,7 @@ def test_a_killed_press_ends_as_one_that_was_not(tmp_path, monkeypatch):
 
 @pytest.mark.process
 def test_a_checkpoint_of_another_press_is_not_used(tmp_path, monkeypatch):
-    monkeypatch.setattr(solve.solution.checkpoint, "EVERY_S", 0.0)
+    monkeypatch.setattr(solve.solution.checkpoint, "WRITE_EVERY_S", 0.0)
     with pytest.raises(KilledError):
         press(Checkpoint(tmp_path / "press.npz", "one"), kill_at(3))
     solved = []

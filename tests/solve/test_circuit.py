@@ -8,7 +8,7 @@ from solve.physics import Physics
 from solve.readout.amplifier import leaky_integral
 from solve.readout.channel_parts import MutualCapacitance
 from solve.readout.channels import input_voltages
-from solve.terms.circuit import Circuit, Tied
+from solve.terms.circuit import Circuit, TiedInputs
 from tests.cases import for_each
 from tests.solve.trial import trial
 
@@ -83,7 +83,7 @@ def test_tied_inputs_are_the_channels_of_the_read_out(resistance, error):
     time = np.linspace(0.0, 1.0, 401)
     charge = np.column_stack([np.sin(3.0 * time), 0.2 * time])
     circuits = [Circuit(n, C_FILM, C_INPUT, resistance) for n in (0, 1)]
-    tied = Tied(np.array([0, 1]), 0.8 * np.array([[1.0, -1.0], [-1.0, 1.0]]))
+    tied = TiedInputs(np.array([0, 1]), 0.8 * np.array([[1.0, -1.0], [-1.0, 1.0]]))
     history, found = [one.start() for one in circuits], [np.zeros(2)]
     for q, dt in zip(charge[1:], np.diff(time), strict=True):
         state = trial(np.zeros((1, 3)), [0.0, 0.0], dt)

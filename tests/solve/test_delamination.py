@@ -13,7 +13,7 @@ from tests.cases import for_each
 from tests.solve.term_body import TermBody, layers, tangent_error
 
 RUBBER = InvariantLaw(0.5, 0.0, 0.0, 0.0, 20.0)
-STIFF = RUBBER.scaled(50.0)
+STIFF = RUBBER.scale_moduli(50.0)
 LAWS = {"medium2": RUBBER, "film": RUBBER}
 NAMES = ["bond-film-medium2", "bond-base"]
 

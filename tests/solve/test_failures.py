@@ -70,7 +70,7 @@ def test_a_slab_crushed_flat_turns_an_element_inside_out_and_keeps_the_steps_bef
 
 
 def test_a_plate_on_a_rim_that_the_case_holds_is_told_so_and_no_far_equilibrium_is_looked_for(monkeypatch):
-    monkeypatch.setattr(marching, "snapped", lambda *_: pytest.fail("looked for a far equilibrium"))
+    monkeypatch.setattr(marching, "snap", lambda *_: pytest.fail("looked for a far equilibrium"))
     stack = slab(boundary="clamped", held_layers=("medium1",))
     result, said = stopped(stack, dot("plate", stack), Press(indentation_mm=0.1, load_steps=2))
     assert "the dot meets the rim of medium1 that the case holds at x = " in said

@@ -37,7 +37,7 @@ def test_quality_is_the_shape_at_the_same_corner(quality, prototype):
     time = np.linspace(0.0, 1.0, 4001)
     given = np.sin(40.0 * time) ** 2
     expected = lsim(prototype, given, time)[1]
-    found = Filter(CORNER_HZ, 2, quality=float(quality)).applied(time, given)
+    found = Filter(CORNER_HZ, 2, quality=float(quality)).apply(time, given)
     np.testing.assert_allclose(found, expected, atol=1e-9)
 
 
@@ -51,8 +51,8 @@ def test_half_the_power_is_left_at_the_corner(order, quality):
 def test_dead_time_shifts_what_leaves_the_filter():
     time = np.linspace(0.0, 1.0, 4001)
     given = np.sin(40.0 * time) ** 2
-    plain = Filter(CORNER_HZ, 2).applied(time, given)
-    late = Filter(CORNER_HZ, 2, delay_s=0.05).applied(time, given)
+    plain = Filter(CORNER_HZ, 2).apply(time, given)
+    late = Filter(CORNER_HZ, 2, delay_s=0.05).apply(time, given)
     np.testing.assert_allclose(late[200:], plain[:-200], atol=1e-9)
     assert not late[:200].any()
 
@@ -67,7 +67,7 @@ def test_order_two_and_dead_time_come_close_to_order_four(prototype):
     def missed(shares):
         def left(values):
             corner_Hz, quality, delay_s = *values[:2], values[2] if shares == 3 else 0.0
-            return Filter(corner_Hz, 2, quality=quality, delay_s=delay_s).applied(time, given) - true
+            return Filter(corner_Hz, 2, quality=quality, delay_s=delay_s).apply(time, given) - true
 
         found = least_squares(left, [CORNER_HZ, 0.6, 0.005][:shares], bounds=(1e-4, [100.0, 2.0, 0.1][:shares]))
         return np.sqrt(np.mean(found.fun**2) / np.mean(true**2))

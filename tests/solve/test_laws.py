@@ -146,10 +146,10 @@ def test_a_law_does_not_know_the_axes_or_the_unit(name):
     law, turn = LAWS[name], Rotation.from_rotvec([0.2, 0.9, -0.4]).as_matrix()
     c = stretched((0.7, 1.1, 1.4))
     s = from_voigt(law.stress(c[None])[0][0])
-    turned = law.scaled(1e6).stress((turn @ c @ turn.T)[None])[0][0]
+    turned = law.scale_moduli(1e6).stress((turn @ c @ turn.T)[None])[0][0]
     np.testing.assert_allclose(from_voigt(turned), 1e6 * turn @ s @ turn.T, atol=1e-8)
-    np.testing.assert_allclose(law.scaled(1e6).energy(c[None]), 1e6 * law.energy(c[None]), rtol=1e-14)
-    assert law.scaled(1e6).bulk_modulus == pytest.approx(1e6 * law.bulk_modulus)
+    np.testing.assert_allclose(law.scale_moduli(1e6).energy(c[None]), 1e6 * law.energy(c[None]), rtol=1e-14)
+    assert law.scale_moduli(1e6).bulk_modulus == pytest.approx(1e6 * law.bulk_modulus)
 
 
 @for_each("name", SOFTENING_LAWS)

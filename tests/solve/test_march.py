@@ -11,7 +11,7 @@ from solve.setup import set_up
 from solve.solution import crushing
 from solve.solution.errors import NoEquilibriumError
 from solve.solution.linear import LinearSolver
-from solve.solution.march import _ahead, march, rest_state
+from solve.solution.march import _extrapolate, march, rest_state
 from solve.solution.schedule import Target
 from solve.system import Load, State
 from tests.solve.segments import ridge
@@ -126,7 +126,7 @@ def test_the_guess_for_the_next_state_is_exact_on_a_line():
     def state(t):
         return State(t, Load((0.0, 0.0), 0.0), np.array([1.0 + t, 3.0 - 2.0 * t]), ())
 
-    np.testing.assert_allclose(_ahead(state(0.3), state(0.4), 0.9), state(0.9).x, rtol=1e-13)
+    np.testing.assert_allclose(_extrapolate(state(0.3), state(0.4), 0.9), state(0.9).x, rtol=1e-13)
 
 
 @pytest.mark.press

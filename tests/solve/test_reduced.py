@@ -14,7 +14,7 @@ from solve.physics import Physics
 from solve.readout.heat_and_touch import ContactCharge, Pyroelectric
 from solve.reduced import cache
 from solve.reduced.fit import CELLS, ResponseTable
-from solve.reduced.model import ReducedModel, structure
+from solve.reduced.model import ReducedModel, structure_key
 from solve.reduced.response import Accuracy
 from solve.terms.friction import DotFriction
 from solve.terms.guide import GuideFriction
@@ -35,7 +35,7 @@ def solid(share=0.6) -> ReducedModel:
     table[:, 1] = np.column_stack([STIFFNESS * (rise - 1.0), 0.0 * w, 1e-9 * rise, rise])
     fit = ResponseTable(table, np.array([0.0, 1.0, 0.0]), np.array([0, 1]), np.array([[0, 0]]), 0.0)
     film, accuracy = np.array([[1e-9, 1e-4]]), Accuracy(0.01, 0.02, 0.03)
-    return ReducedModel(fit, FULL, {"medium2": share}, film, 30.0, structure(Physics()), accuracy)
+    return ReducedModel(fit, FULL, {"medium2": share}, film, 30.0, structure_key(Physics()), accuracy)
 
 
 def test_a_ramp_relaxes_while_it_rises():
@@ -199,10 +199,10 @@ def test_the_voltage_bound_of_a_leaky_input_follows_from_that_of_the_charge():
 
 def test_a_kept_model_is_the_model_and_a_damaged_file_is_none(tmp_path):
     path = tmp_path / "kept.npz"
-    cache.write(path, solid())
-    found = cache.read(path)
+    cache.write_model(path, solid())
+    found = cache.read_model(path)
     before, after = (m.respond(TIME, 0.4 * TIME, SOLID) for m in (solid(), found))
     np.testing.assert_array_equal(before.force_N, after.force_N)
     assert before.error_bound == after.error_bound
     path.write_bytes(path.read_bytes()[:200])
-    assert cache.read(path) is None
+    assert cache.read_model(path) is None

@@ -15,7 +15,7 @@ from solve.setup import Setup, set_up
 from solve.solution.linear import LinearSolver
 from solve.solution.march import rest_state
 from solve.solution.schedule import Target
-from solve.solution.similar_press import Course, Equilibria, Found, combined, reach
+from solve.solution.similar_press import Course, Equilibria, Found, reach, weighted_sum
 from solve.system import Load
 from tests.solve.segments import cap, coarse_mesh, materials, ridge, segment
 
@@ -110,5 +110,5 @@ def test_of_a_difference_that_is_known_once_no_more_is_asked():
 
 
 def test_two_presses_add_up():
-    both = combined((2.0, line(lambda place: place)), (-1.0, line(lambda place: place**2)))
+    both = weighted_sum((2.0, line(lambda place: place)), (-1.0, line(lambda place: place**2)))
     np.testing.assert_allclose(both.unknowns[:, 0], [2.0 * place - place**2 for place in PLACES])

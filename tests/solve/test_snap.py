@@ -13,9 +13,9 @@ import pytest
 import scipy.sparse as sp
 
 import solve.solution.march as marching
-from solve.convergence_warnings import doubtful_results
+from solve.convergence_warnings import convergence_warnings
 from solve.fem.tangent import Tangent
-from solve.solution.continuation import snapped
+from solve.solution.continuation import snap
 from solve.solution.errors import NoEquilibriumError
 from solve.solution.linear import LinearSolver
 from solve.solution.schedule import Target
@@ -75,7 +75,7 @@ def at(u):
 
 def test_above_the_limit_load_the_apex_falls_to_the_far_equilibrium(linear):
     load = Load((0.0, 0.0), 1.01 * resistance(LIMIT))
-    state = snapped(Truss(), linear, load, 1.0, at(0.99 * LIMIT))
+    state = snap(Truss(), linear, load, 1.0, at(0.99 * LIMIT))
     far = max(np.roots([1.0, -3.0 * RISE, 2.0 * RISE**2, -load.drive]).real)
     assert state.snapped
     assert state.x[0] == pytest.approx(far, rel=1e-8)
@@ -84,7 +84,7 @@ def test_above_the_limit_load_the_apex_falls_to_the_far_equilibrium(linear):
 
 def test_below_the_limit_load_it_stays_with_the_near_one(linear):
     load = Load((0.0, 0.0), 0.99 * resistance(LIMIT))
-    state = snapped(Truss(), linear, load, 1.0, at(0.8 * LIMIT))
+    state = snap(Truss(), linear, load, 1.0, at(0.8 * LIMIT))
     near = min(np.roots([1.0, -3.0 * RISE, 2.0 * RISE**2, -load.drive]).real)
     assert state.x[0] == pytest.approx(near, rel=1e-8)
 
@@ -92,7 +92,7 @@ def test_below_the_limit_load_it_stays_with_the_near_one(linear):
 def test_what_falls_where_nothing_can_hold_it_has_no_equilibrium(linear):
     load = Load((0.0, 0.0), 1.01 * resistance(LIMIT))
     with pytest.raises(NoEquilibriumError, match=r"no equilibrium in \d+ damped steps either"):
-        snapped(Floored(), linear, load, 1.0, at(0.99 * LIMIT))
+        snap(Floored(), linear, load, 1.0, at(0.99 * LIMIT))
 
 
 def test_a_press_that_snapped_says_at_which_depths():
@@ -103,9 +103,9 @@ def test_a_press_that_snapped_says_at_which_depths():
         )
         for depth, snap in ((1e-4, False), (2e-4, True), (3e-4, True))
     ]
-    (said,) = doubtful_results([step], records)
+    (said,) = convergence_warnings([step], records)
     assert said.startswith("at 0.200, 0.300 mm something snapped: ")
-    assert doubtful_results([step], records[:1]) == ()
+    assert convergence_warnings([step], records[:1]) == ()
 
 
 def test_a_press_may_snap_and_a_table_over_depth_may_not(monkeypatch):
@@ -118,7 +118,7 @@ def test_a_press_may_snap_and_a_table_over_depth_may_not(monkeypatch):
         return replace(last, time=time, load=load, snapped=True)
 
     monkeypatch.setattr(marching, "_equilibrate", fails)
-    monkeypatch.setattr(marching, "snapped", falls)
+    monkeypatch.setattr(marching, "snap", falls)
     monkeypatch.setattr(marching, "explained", lambda *_: "no")
     monkeypatch.setattr(marching, "rim_met", lambda *_: None)
     monkeypatch.setattr(marching, "with_work", lambda *given: given[-1])

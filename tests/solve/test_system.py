@@ -61,8 +61,8 @@ def test_switched_constraints_are_those_of_a_state_that_has_them():
     now = system.evaluate(trial, rest.histories)
     wanted = ~now.status
     wanted[::3] = now.status[::3]
-    there = system.switched(now, trial, rest.histories, wanted)
-    back = system.switched(there, trial, rest.histories, now.status)
+    there = system.with_status(now, trial, rest.histories, wanted)
+    back = system.with_status(there, trial, rest.histories, now.status)
     np.testing.assert_allclose(back.residual, now.residual, atol=1e-12)
     np.testing.assert_allclose(back.tangent.upper.data, now.tangent.upper.data, atol=1e-12)
     rows, pressure = system.contact.pressure_dofs, trial.x[system.contact.pressure_dofs]

@@ -174,7 +174,7 @@ def held_at_its_base(points):
 def block(kind, coefficient, cells=2, law=None, length=1.0, stress=1.0, **options):
     """A block of 1 x 1 x 0.6 on its base, touched in the middle of its face; in any unit of length and stress."""
     points, tets = box(cells, (1.0, 1.0, 0.6))
-    law = (law or neo_hookean(1.0, 0.45)).scaled(stress)
+    law = (law or neo_hookean(1.0, 0.45)).scale_moduli(stress)
     dot = rigid(kind, length * np.array([0.5, 0.5, 0.6]), radius=0.6 * length)
     return Block(length * points, tets, law, dot, held_at_its_base(points), coefficient, **options)
 

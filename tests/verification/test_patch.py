@@ -49,8 +49,8 @@ def surface_held(body: ElasticBody, shape, field):
 @for_each("name", MEDIA)
 def test_an_affine_displacement_of_the_surface_is_affine_inside(name):
     shape = distorted()
-    law = MEDIA[name].law.scaled(1e6)
-    law = law.scaled(1.0 / law.shear_modulus)
+    law = MEDIA[name].law.scale_moduli(1e6)
+    law = law.scale_moduli(1.0 / law.shear_modulus)
     body, affine = solid_body(shape.points, law, shape.tets), shape.points @ STRAIN.T
     body.solve(surface_held(body, shape, affine), steps=2)
     np.testing.assert_allclose(body.u, affine, atol=1e-10)

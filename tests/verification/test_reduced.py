@@ -13,7 +13,7 @@ from solve.materials.prony import Prony
 from solve.model import Press, Readout
 from solve.physics import BondLine, Physics
 from solve.readout.amplifier import amplify
-from solve.reduced.accuracy import BETWEEN, refined, relative_error
+from solve.reduced.accuracy import SAMPLES_A_STEP, relative_error, with_samples_between
 from solve.reduced.build import build_reduced
 from solve.terms.rig import RigSpring
 from solve.waveform import Waveform
@@ -52,14 +52,14 @@ def errors(model, mesh_3d, waveform, depth_mm, physics, gap_mm=0.0):
     result = press_segment(STACK, materials(), dot, press, mesh_3d, physics=physics)
     assert result.converged
     trace, depth = result.trace, 1e3 * result.trace.indentation_m
-    time = refined(trace.time_s)
+    time = with_samples_between(trace.time_s)
     fine = model.respond(time, np.interp(time, trace.time_s, depth), physics, CABLE, gap_mm=gap_mm)
     same = model.respond(trace.time_s, depth, physics, CABLE, gap_mm=gap_mm)
     charge = trace.film_charge_C[:, 0]
     voltage = amplify(trace.time_s, charge, float(result.capacitance_F[0]), CABLE, physics)
     pairs = {
-        "force": (fine.force_N[::BETWEEN], trace.reaction_force_N, fine.error_bound.force_N),
-        "charge": (fine.charge_C[::BETWEEN], charge, fine.error_bound.charge_C),
+        "force": (fine.force_N[::SAMPLES_A_STEP], trace.reaction_force_N, fine.error_bound.force_N),
+        "charge": (fine.charge_C[::SAMPLES_A_STEP], charge, fine.error_bound.charge_C),
         "voltage": (same.voltage_V, voltage, same.error_bound.voltage_V),
     }
     found = {name: relative_error(ours, wanted) for name, (ours, wanted, _) in pairs.items()}

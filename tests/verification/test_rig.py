@@ -72,7 +72,7 @@ def test_a_loop_loses_coulombs_force_times_the_way_that_slips(forces_N, preslidi
     """Between A and -A each slider slips 2 A - 2 d either way: together they lose sum 4 F (A - d)."""
     amplitude_mm = 1.5
     path = amplitude_mm * np.sin(np.linspace(0.0, 4.0 * np.pi, 4001))
-    force = GuideFriction(forces_N, presliding_mm).felt_N(path)
+    force = GuideFriction(forces_N, presliding_mm).sliding_force_N(path)
     second = slice(len(path) // 2, None)  # the first loop begins at rest
     lost = np.trapezoid(force[second], path[second])
     ways = [4.0 * f * (amplitude_mm - d) for f, d in zip(forces_N, presliding_mm, strict=True)]

@@ -144,7 +144,7 @@ def test_a_fit_finds_a_limit_from_every_start_of_it(limited, largest_error):
     voltage = np.linspace(-0.2, 1.0, 400)
 
     def left(values):
-        return Saturation(**candidate.parameters(values)).applied(voltage, voltage) - limited(voltage)
+        return Saturation(**candidate.parameters(values)).apply(voltage, voltage) - limited(voltage)
 
     bounds = np.array([(c.low, c.high) for c in candidate.coordinates]).T
     for start in (0.1, *candidate.coordinates[0].starts):

@@ -19,7 +19,7 @@ def jobs():
 @pytest.mark.process
 def test_a_process_answers_as_this_one_does(jobs, monkeypatch, tmp_path):
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
-    here = [job.run()[0] for job in jobs]
+    here = [job.solve()[0] for job in jobs]
     monkeypatch.setattr(workers, "WORTH_A_PROCESS", 1)
     with LocalProcesses(2) as executor:
         there = workers.run_all(jobs, silent, executor=executor)
