@@ -13,7 +13,7 @@ from solve.model import Readout
 from solve.physics import Physics, laws_of
 from solve.readout.amplifier import amplify, input_of, stages
 from solve.reduced.fit import CELLS, ResponseTable
-from solve.reduced.recording import branches, check_recording, second_differences, sensed
+from solve.reduced.recording import branches, check_recording, second_differences, sensor_force_N
 from solve.reduced.response import Accuracy, ErrorBound, Raw, ReducedResponse
 from solve.reduced.rig import compliance_mm_per_N, mass_Ns2_per_mm, unknown_of_rig, unknown_of_segment
 from solve.reduced.time_stepping import BY_DEPTH, BY_FORCE, TOO_DEEP, follow
@@ -59,7 +59,7 @@ class ReducedModel:
         time, drive, kind = check_recording(time_s, depth_mm, force_N, gap_mm)
         path, outputs = self._follow(time, drive, kind, physics)
         motion = Motion(drive, partial(np.gradient, drive, time), partial(second_differences, time, drive))
-        force = sensed(drive, kind, path, outputs[:, 0], physics, motion)
+        force = sensor_force_N(drive, kind, path, outputs[:, 0], physics, motion)
         area, constant = self.film[:, 1], self.pyroelectric_uC_per_m2_K
         each = outputs[:, 2:] + added_charge_C(physics.added, time, outputs[:, 1], area, constant)
         wired = np.ones(len(self.film)) if wired is None else np.asarray(wired, dtype=np.float64)

@@ -39,8 +39,8 @@ def branches(viscosity: Mapping[str, Prony], layers: tuple[str, ...]) -> tuple[F
     return table[:, 0].copy(), table[:, 1].copy(), table[:, 2].astype(np.int64)
 
 
-def sensed(drive: Floats, kind: int, path: Floats, contact: Floats, physics: Physics, motion: Motion) -> Floats:
-    """What the force sensor reads (t,): the force that drives, that of the rig's spring, or of the contact.
+def sensor_force_N(drive: Floats, kind: int, path: Floats, contact: Floats, physics: Physics, motion: Motion) -> Floats:
+    """Reading (t,) of the force sensor in N: the force that drives, that of the rig's spring, or of the contact.
 
     To either of the latter comes what the physics adds. motion : the drive.
     """

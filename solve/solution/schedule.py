@@ -13,7 +13,7 @@ from foundation.arrays import Bools, Floats
 from foundation.errors import InputError
 from foundation.files import read_text, regular_file_size
 from solve.model import Press
-from solve.solution.thinning import thinned
+from solve.solution.thinning import samples_to_keep
 from solve.system import Load
 from solve.waveform import Waveform
 
@@ -54,7 +54,7 @@ def stretches_s(waveform: Waveform) -> Floats:
     corners = corners_s(waveform)
     if waveform.shape != "file" or waveform.each_solved:
         return corners
-    return corners[thinned(corners, fraction(waveform, corners), STRAIGHT_SHARE, MOST_ROWS)]
+    return corners[samples_to_keep(corners, fraction(waveform, corners), STRAIGHT_SHARE, MOST_ROWS)]
 
 
 def largest_fraction(waveform: Waveform) -> float:

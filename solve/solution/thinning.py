@@ -5,8 +5,8 @@ import numpy as np
 from foundation.arrays import Bools, Floats
 
 
-def thinned(time: Floats, values: Floats, tolerance: float, most: int) -> Bools:
-    """Which samples (t,) to keep so that straight lines between them stay within a tolerance of all values.
+def samples_to_keep(time: Floats, values: Floats, tolerance: float, most: int) -> Bools:
+    """Whether each sample (t,) is to be kept so that straight lines stay within a tolerance of all values.
 
     The sample farthest from its line is added until none is too far, or until there are as many as allowed.
     """

@@ -25,12 +25,12 @@ class Reduction:
     relaxing: tuple[str, ...]
     largest_share: float
 
-    def made(self) -> ReducedModel:
-        """Pressed, or recalled. NoEquilibriumError."""
+    def build_model(self) -> ReducedModel:
+        """Press the model, or recall it from the disk. NoEquilibriumError."""
         return recall_or_build(self._task, check=False)
 
     def keep(self, made: ReducedModel) -> None:
-        """Have it recalled here where it was made elsewhere."""
+        """Keep on this disk a model that was made elsewhere."""
         keep_model(self._task, False, made)
 
     @property

@@ -32,8 +32,8 @@ class Depths:
         self.to_rows: Floats = make_interp_spline(knots, unit, min(3, len(shares)))(np.linspace(0.0, 1.0, CELLS + 1))
 
 
-def changed(fit: ResponseTable, depths: Depths, change: Floats, charge_factor: float) -> ResponseTable:
-    """The table with the summed changes (n, 2 + e), and every charge times a factor."""
+def with_changes(fit: ResponseTable, depths: Depths, change: Floats, charge_factor: float) -> ResponseTable:
+    """The table with the summed changes (n, 2 + e) at the depths, and every charge times a factor."""
     rows = depths.to_rows @ change
     elastic = fit.table[:, 0, : change.shape[1]]
     factors = np.exp(rows[:, :2])
@@ -41,7 +41,7 @@ def changed(fit: ResponseTable, depths: Depths, change: Floats, charge_factor: f
     return _with_elastic(fit, found, factors, charge_factor)
 
 
-def replaced(fit: ResponseTable, outputs: Floats) -> ResponseTable:
+def with_elastic_outputs(fit: ResponseTable, outputs: Floats) -> ResponseTable:
     """The table with other elastic outputs (cells + 1, 2 + e), of a dot that touches at once."""
     own = fit.table[:, 0, :2]
     factors = np.clip(np.divide(outputs[:, :2], own, out=np.ones_like(own), where=own > 0.0), *TRUSTED)

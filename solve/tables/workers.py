@@ -17,7 +17,7 @@ from solve.tables.reduction import Reduction
 def answer(job: DepthPress | Reduction) -> Floats | ReducedModel | str:
     """Answer of a job: outputs, a reduced model, or a sentence why there is none."""
     try:
-        return job.made() if isinstance(job, Reduction) else _outputs_of(job)
+        return job.build_model() if isinstance(job, Reduction) else _outputs_of(job)
     except (NoEquilibriumError, ValueError) as error:
         return str(error)
 

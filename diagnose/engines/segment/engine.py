@@ -40,7 +40,7 @@ from solve.readout.stages import Hum
 from solve.reduced.fit import ResponseTable
 from solve.reduced.rig import compliance_mm_per_N
 from solve.tables.rig_mesh import MeshSettings, mesh_of
-from solve.tables.table_changes import changed
+from solve.tables.table_changes import with_changes
 
 MAX_FIXED_POINT_ROUNDS = 40
 FORCE_TOLERANCE = 1e-6  # of the largest force
@@ -239,7 +239,7 @@ class SegmentEngine:
             change = base.table_change(beside, settings)
             if change is None and factor == 1.0:
                 return base.fit
-            return changed(base.fit, base.depths, base.no_change if change is None else change, factor)
+            return with_changes(base.fit, base.depths, base.no_change if change is None else change, factor)
 
         return self._tables.recall_or_make((run.dot_offset_mm, base.elastic_settings(settings), factor), changed_table)
 

@@ -35,7 +35,7 @@ from solve.tables.reduction import Reduction
 from solve.tables.rig_mesh import MeshSettings, finer_mesh, rig_mesh
 from solve.tables.smoothing import PRESSED, smooth
 from solve.tables.table_accuracy import accuracy
-from solve.tables.table_changes import TRUSTED, Depths, change, replaced
+from solve.tables.table_changes import TRUSTED, Depths, change, with_elastic_outputs
 from solve.tables.workers import run_all
 
 TABLE_DEPTH_RATIO = 1.02  # depth of the table over that of the deepest run
@@ -72,10 +72,10 @@ class Prepared:
         reduction, outputs = self._reduce([*jobs, *self.presses.baseline_jobs], report)
         fine, middle = (smooth(PRESSED, found) for found in outputs[: len(jobs)])
         self._smooth = fine.at(np.linspace(TOUCH_DEPTH_SHARE, 1.0, CELLS + 1))
-        made = reduction.made()
+        made = reduction.build_model()
         self.relaxing, self.raw = reduction.relaxing, made.fit
         self.film = FilmPlate(made.film, made.pyroelectric_uC_per_m2_K)
-        self.fit: ResponseTable = replaced(self.raw, self._smooth)
+        self.fit: ResponseTable = with_elastic_outputs(self.raw, self._smooth)
         fine_mm, middle_mm = (options.element_size_mm for _, options in meshes)
         self.accuracy = accuracy(middle, fine, fine_mm / middle_mm)
 

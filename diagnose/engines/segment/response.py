@@ -15,7 +15,7 @@ from solve.physics import Physics, laws_of
 from solve.readout.amplifier import amplify
 from solve.readout.channels import amplify_channels
 from solve.reduced.fit import ResponseTable
-from solve.reduced.recording import branches, sensed
+from solve.reduced.recording import branches, sensor_force_N
 from solve.reduced.rig import compliance_mm_per_N, mass_Ns2_per_mm, unknown_of_rig
 from solve.reduced.time_stepping import TOO_DEEP, follow
 
@@ -87,7 +87,7 @@ def channel_signals(
     if "force_N" in names:
         told = (values, drive.kind, found.path_mm, found.force_N, on.physics)
         motion = Motion(values, lambda: run.velocity_mm_per_s, lambda: run.acceleration_mm_per_s2)
-        signals["force_N"] = sensed(*told, motion)
+        signals["force_N"] = sensor_force_N(*told, motion)
     if "displacement_mm" in names:
         path = found.path_mm + on.dot.gap_mm
         signals["displacement_mm"] = np.where(drive.touching, path, run.channels.get("displacement_mm", path))

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 
 from foundation.arrays import Floats, Ints
-from solve.solution.thinning import thinned
+from solve.solution.thinning import samples_to_keep
 
 SLOPE_FRACTIONS = 0.06, 0.2, 0.4, 0.6, 0.8, 0.94  # of a slope: closest where softened rubber leaves its first curve
 STEEP_RISE_SHARE = 0.2  # of the largest drive: a lesser rise needs no point between
@@ -18,7 +18,7 @@ def solved_samples(time: Floats, share: Floats, tolerance: float, most: int) -> 
     Corners, and between them points by SLOPE_FRACTIONS or HOLD_FRACTIONS. What is clear of the segment has no points of
     its own.
     """
-    kept = np.flatnonzero(thinned(time, share, tolerance, most // 2))
+    kept = np.flatnonzero(samples_to_keep(time, share, tolerance, most // 2))
     more: list[int] = []
     for first, last in pairwise(kept):
         rise = abs(share[last] - share[first])
