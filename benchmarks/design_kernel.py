@@ -16,7 +16,7 @@ import numpy as np
 
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.kernel import ArrayKernel
-from softdot.arrays.kernel_presses import KernelPress, KernelTask, grid_of, pressed, recalled
+from softdot.arrays.kernel_presses import KernelPress, KernelTask, grid_of, recall, solve_task
 from softdot.config.loading import load_config
 from softdot.reading.designs.operating import coarse_kernel
 
@@ -42,7 +42,7 @@ def main(config: str, out: str, every: str, *settings: str) -> None:
     kernel = coarse_kernel(case.config)
     rows = []
     for task in list(grid_of(case).tasks().values())[:: int(every)]:
-        rows.append(differences(kernel, task, recalled(task) or pressed(task)))
+        rows.append(differences(kernel, task, recall(task) or solve_task(task)))
         print(rows[-1], flush=True)
     names = ("force_percent", "charge_percent")
     rms = {name: np.sqrt(np.mean(np.square([row[name] for row in rows]), axis=0)).tolist() for name in names}

@@ -14,7 +14,7 @@ from pathlib import Path
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.kernel import load_kernel
 from softdot.arrays.kernel_checks import cells_by_chance, places_by_chance
-from softdot.arrays.kernel_errors import measured, worst
+from softdot.arrays.kernel_errors import measure_errors, worst
 from softdot.config.loading import config_from
 
 PLACES, SEEDS = 10, range(1, 6)
@@ -27,7 +27,9 @@ def main(folder: Path, out: Path) -> None:
     presses = places_by_chance(case, PLACES, SEEDS[0])
     for seed in SEEDS:
         presses |= {f"{name}, seed {seed}": press for name, press in cells_by_chance(case, 1, seed).items()}
-    checks = measured(kernel, presses, lambda name, number, count: print(f"{number} of {count}: {name}", flush=True))
+    checks = measure_errors(
+        kernel, presses, lambda name, number, count: print(f"{number} of {count}: {name}", flush=True)
+    )
     out.write_text(json.dumps([vars(one) for one in checks], indent=1), "utf-8")
     stated = kernel.about["kernel_error"]
     within = {name: sum(getattr(one, name) <= value for one in checks) for name, value in stated.items()}

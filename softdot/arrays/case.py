@@ -40,14 +40,14 @@ class ArrayCase:
 
     @cached_property
     def layout(self) -> ArrayLayout:
-        """InputError for a pitch that the standard does not state."""
+        """Layout of the segments. InputError for a pitch that the standard does not state."""
         return array_layout(self.array, self.config.segment, self.config.dot)
 
     @cached_property
-    def built(self) -> list[str]:
-        """What a user should know about what is built. InputError for what cannot be built or pressed at all."""
+    def design_warnings(self) -> list[str]:
+        """Warnings about the array as it is built. InputError for one that cannot be built or pressed at all."""
         warnings = [*check_segment(self.config.segment), *check_array(self.layout)]
-        self._refuse_what_is_one_segments()
+        self._refuse_keys_of_one_segment()
         if self.config.press.indentation_mm is not None:
             check_press_depth(self.config.segment, self.config.press.indentation_mm)
         if self.config.dot.cell is not None:
@@ -56,22 +56,24 @@ class ArrayCase:
 
     @property
     def warnings(self) -> list[str]:
-        """What a user should know about this design and all its presses. InputError for what cannot be solved."""
-        return list(dict.fromkeys([*self.built, *(text for press in self.presses for text in press.warnings)]))
+        """Warnings about the array and all its presses. InputError for one that cannot be solved."""
+        return list(
+            dict.fromkeys([*self.design_warnings, *(text for press in self.presses for text in press.warnings)])
+        )
 
     @cached_property
     def presses(self) -> list[PreparedPress]:
-        """All that are solved of the array: a dot over one segment each, and the cell where there is one."""
-        alone = [self.press_over(self.layout.places[number]) for number in self.solved]
+        """Presses that are solved: a dot over one segment each, and the cell where there is one."""
+        alone = [self.press_over(self.layout.places[number]) for number in self.solved_numbers]
         return [*alone, self.press_by_cell()] if self.config.dot.cell is not None else alone
 
     @property
     def cost(self) -> Cost:
-        """Of all presses of the array, whose meshes are of about the size of the largest. InputError."""
+        """Cost of all presses of the array, whose meshes are of about the size of the largest. InputError."""
         return cost_of(max(press.elements for press in self.presses), self.config, len(self.presses))
 
-    def _refuse_what_is_one_segments(self) -> None:
-        """Keys of the configuration that an array does not take."""
+    def _refuse_keys_of_one_segment(self) -> None:
+        """InputError for keys that an array does not take."""
         config = self.config
         if config.dot.shape != "cap":
             raise InputError(f"dot.shape = '{config.dot.shape}': an array is pressed by round dots, 'cap'")
@@ -86,7 +88,7 @@ class ArrayCase:
             )
 
     def refuse_kernel(self) -> None:
-        """InputError for what a kernel, a table over depth without time, does not hold."""
+        """InputError for an array of which a kernel, a table over depth without time, cannot be made."""
         dot, force = self.config.dot, self.config.press.force_N
         if self.config.press.indentation_mm is None:
             raise InputError(
@@ -147,14 +149,14 @@ class ArrayCase:
 
     @cached_property
     def _film_law(self) -> FilmLaw:
-        """Of the film in the axes of the array. InputError."""
+        """Law of the film in the axes of the array. InputError."""
         film = self.press_over(self.layout.places[0]).model.materials["film"]
         assert isinstance(film, PiezoelectricFilm)
         return film_law(film, self.config.segment.film.draw_angle_deg)
 
     @property
     def capacitance_pF(self) -> Floats:
-        """eps A / t of each segment's electrode, (n,). InputError."""
+        """Capacitance eps A / t of each segment's electrode, (n,). InputError."""
         length, width = (1e-3 * (size - 2.0 * self.array.electrode_margin_mm) for size in self.layout.size_mm)
         thickness = 1e-6 * self.config.segment.film.thickness_um
         one = 1e12 * self._film_law.permittivity * length * width / thickness
@@ -186,12 +188,14 @@ class ArrayCase:
         return list(dict.fromkeys(r * columns + c for r, c in found))
 
     @property
-    def solved(self) -> list[int]:
+    def solved_numbers(self) -> list[int]:
         """Numbers of the segments whose presses are solved: the first of those that are images of each other."""
         return [number for number in range(len(self.layout.places)) if min(self.images(number)) == number]
 
     def lone(self, segment: Segment) -> "ArrayCase":
-        """One segment alone, on a mesh of the same kind: side conditions are the segment's. It has one channel."""
+        """The case of one segment alone, on a mesh of the same kind: side conditions are the segment's. It has one
+        channel.
+        """
         alone = self.array.model_copy(
             update={"columns": 1, "rows": 1, "cells": 1, "shared": (), "grooves": (), "grid_layers": ()}
         )

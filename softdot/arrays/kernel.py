@@ -25,14 +25,15 @@ NPZ, JSON = "kernel.npz", "kernel.json"
 CHECKSUM = "checksum_sha256"
 AGAIN = "make it again by softdot array --kernel"
 TABLES = ("x_mm", "y_mm", "depth_mm", "charge_pC", "force_N", "place_x_mm", "place_y_mm", "load_mm", "sinking_mm")
-ROUNDS = 3
+SINKING_ROUNDS = 3
 """Of the depths of dots that press at once; each is about fifty times nearer than the one before."""
-TOO_DEEP_MM = 1e-9
+DEPTH_ROUND_OFF_MM = 1e-9
 
 
 @dataclass(frozen=True)
 class ArrayKernel:
-    """Places are of a dot's tip in the frame of the array, whose middle is the origin; depths below its resting top.
+    """Charge and force of a dot over an array, as tables. Places are of the dot's tip in the frame of the array, whose
+    middle is the origin; depths below its resting top.
 
     x_mm (a,), y_mm (b,), depth_mm (c,) : axes of charge_pC (a, b, c, n) and force_N (a, b, c), depth from 0.
     place_x_mm (p,), place_y_mm (q,), load_mm (r,) : axes of sinking_mm (p, q, r, p, q), of the surface at the last two
@@ -57,7 +58,7 @@ class ArrayKernel:
 
     @property
     def capacitance_pF(self) -> Floats:
-        """Of each segment's electrode, (n,)."""
+        """Capacitance (n,) of each segment's electrode."""
         return np.asarray(self.about["capacitance_pF"], dtype=np.float64)
 
     def touches(self, x_mm: Floats, y_mm: Floats, depth_mm: Floats) -> Bools:
@@ -74,10 +75,10 @@ class ArrayKernel:
         charge = np.zeros((*touching.shape, self.charge_pC.shape[-1]))
         force = np.zeros(touching.shape)
         if touching.any():
-            at = self._checked(x_mm[touching], y_mm[touching], depth_mm[touching])
+            at = self._points_in_table(x_mm[touching], y_mm[touching], depth_mm[touching])
             axes = (self.x_mm, self.y_mm, self.depth_mm)
-            charge[touching] = interpolated(axes, self.charge_pC, at)
-            force[touching] = interpolated(axes, self.force_N, at)
+            charge[touching] = interpolate(axes, self.charge_pC, at)
+            force[touching] = interpolate(axes, self.force_N, at)
         return charge, force
 
     def of_many(self, x_mm: Floats, y_mm: Floats, depth_mm: Floats) -> tuple[Floats, Floats]:
@@ -87,14 +88,16 @@ class ArrayKernel:
         """
         given = np.where(self.touches(x_mm, y_mm, depth_mm), depth_mm, 0.0)
         depth = given
-        for _ in range(ROUNDS if given.shape[1] > 1 else 0):
-            depth = np.where(given > 0.0, np.clip(given - self._sunk(x_mm, y_mm, depth), 0.0, self.depth_mm[-1]), 0.0)
+        for _ in range(SINKING_ROUNDS if given.shape[1] > 1 else 0):
+            depth = np.where(
+                given > 0.0, np.clip(given - self._sinking_mm(x_mm, y_mm, depth), 0.0, self.depth_mm[-1]), 0.0
+            )
         charge, force = self.of_one(x_mm, y_mm, depth)
-        self._checked(x_mm[given > 0.0], y_mm[given > 0.0], given[given > 0.0])
+        self._points_in_table(x_mm[given > 0.0], y_mm[given > 0.0], given[given > 0.0])
         return charge.sum(axis=1), force.sum(axis=1)
 
-    def _sunk(self, x_mm: Floats, y_mm: Floats, depth_mm: Floats) -> Floats:
-        """By how much the others have pushed the surface down at each dot, (t, k)."""
+    def _sinking_mm(self, x_mm: Floats, y_mm: Floats, depth_mm: Floats) -> Floats:
+        """Depth (t, k) in mm to which the others have pushed the surface down at each dot."""
         found = np.zeros(depth_mm.shape)
         sample, first, second = _pairs(depth_mm > 0.0)
         axes = (self.place_x_mm, self.place_y_mm, self.load_mm, self.place_x_mm, self.place_y_mm)
@@ -102,12 +105,13 @@ class ArrayKernel:
             x_mm[sample, second], y_mm[sample, second], depth_mm[sample, second],
             x_mm[sample, first], y_mm[sample, first],
         ]  # fmt: skip
-        np.add.at(found, (sample, first), interpolated(axes, self.sinking_mm, at))
+        np.add.at(found, (sample, first), interpolate(axes, self.sinking_mm, at))
         return found
 
-    def _checked(self, x_mm: Floats, y_mm: Floats, depth_mm: Floats) -> list[Floats]:
+    def _points_in_table(self, x_mm: Floats, y_mm: Floats, depth_mm: Floats) -> list[Floats]:
+        """Coordinates of dots as the table is read at them. InputError for a depth beyond it."""
         deepest = float(np.max(depth_mm, initial=0.0))
-        if deepest > self.depth_mm[-1] + TOO_DEEP_MM:
+        if deepest > self.depth_mm[-1] + DEPTH_ROUND_OFF_MM:
             raise InputError(f"a dot is {deepest:.4g} mm deep: the kernel ends at {self.depth_mm[-1]:.4g} mm")
         return [x_mm, y_mm, depth_mm]
 
@@ -122,7 +126,9 @@ class ArrayKernel:
 
 
 def load_kernel(folder: Path) -> ArrayKernel:
-    """Of a folder of softdot array. InputError for one that holds no kernel, or one that was changed since."""
+    """Load the kernel in a folder of softdot array. InputError for one that holds no kernel, or one that was
+    changed.
+    """
     where = f"kernel '{folder}'"
     try:
         about = json.loads((folder / JSON).read_text("utf-8"))
@@ -152,8 +158,8 @@ def _checksum(tables: Mapping[str, Any], about: Mapping[str, Any]) -> str:
     return sha.hexdigest()
 
 
-def interpolated(axes: tuple[Floats, ...], table: Floats, at: list[Floats]) -> Floats:
-    """Multilinear in the leading axes of a table, (m, ...) at m points; constant beyond the ends."""
+def interpolate(axes: tuple[Floats, ...], table: Floats, at: list[Floats]) -> Floats:
+    """Multilinear interpolation in the leading axes of a table, (m, ...) at m points; constant beyond the ends."""
     low, share = zip(*(_bracket(axis, place) for axis, place in zip(axes, at, strict=True)), strict=True)
     sizes, extra = table.shape[: len(axes)], table.shape[len(axes) :]
     rows = np.ascontiguousarray(table.reshape(int(np.prod(sizes)), -1), dtype=np.float64)

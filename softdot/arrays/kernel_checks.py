@@ -10,7 +10,7 @@ import numpy as np
 
 from foundation.arrays import Floats
 from softdot.arrays.case import ArrayCase
-from softdot.arrays.kernel_presses import by_one_dot
+from softdot.arrays.kernel_presses import one_dot_config
 from softdot.config.schema import Config
 
 DOTS = 6
@@ -37,7 +37,7 @@ def places_by_chance(case: ArrayCase, count: int, seed: int = SEED) -> dict[str,
     random, half = np.random.default_rng(seed), np.array(case.layout.half_mm)
     places = (random.uniform(-half, half) for _ in range(count))
     return {
-        f"one dot, {number}": _at_depth(by_one_dot(case, float(x), float(y)), random)
+        f"one dot, {number}": _at_depth(one_dot_config(case, float(x), float(y)), random)
         for number, (x, y) in enumerate(places, 1)
     }
 
@@ -80,7 +80,7 @@ def by_cell(case: ArrayCase, dots: list[int], shift_mm: Floats) -> Config:
     sign = chr(0x2800 + sum(1 << (dot - 1) for dot in dots))
     shifted = case.config.dot.lone(cell=sign, cell_dot=dots[0], offset_mm=tuple(shift_mm))
     dot = ArrayCase(case.config.model_copy(update={"dot": shifted})).press_by_cell().config.dot
-    return by_one_dot(case, 0.0, 0.0).model_copy(update={"dot": dot})
+    return one_dot_config(case, 0.0, 0.0).model_copy(update={"dot": dot})
 
 
 def _at_depth(config: Config, random: np.random.Generator) -> Config:

@@ -16,7 +16,7 @@ from foundation.progress import Report
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.kernel import ArrayKernel
 from softdot.arrays.kernel_checks import check_presses
-from softdot.arrays.kernel_presses import KernelTask, all_pressed, filled, grid_of
+from softdot.arrays.kernel_presses import KernelTask, fill_kernel, grid_of, solve_all
 from softdot.arrays.matrix import CrosstalkMatrix
 from softdot.config.schema import Config
 
@@ -54,26 +54,26 @@ def check(
     )
 
 
-def measured(
+def measure_errors(
     kernel: ArrayKernel, presses: Mapping[str, Config], told: Report, executor: Executor = HERE
 ) -> list[KernelCheck]:
-    """Each press solved and laid beside the kernel. StoppedPressError."""
+    """Solve presses and lay them beside the kernel; the errors of each. StoppedPressError."""
     tasks = {name: KernelTask(config, ((0.0,), (0.0,))) for name, config in presses.items()}
-    solved = all_pressed(tasks, told, executor)
+    solved = solve_all(tasks, told, executor)
     return [
-        check(kernel, name, places_of(task), solved[name].depth_mm, solved[name].charge_pC, solved[name].force_N)
+        check(kernel, name, dot_places_mm(task), solved[name].depth_mm, solved[name].charge_pC, solved[name].force_N)
         for name, task in tasks.items()
     ]
 
 
-def places_of(task: KernelTask) -> Floats:
-    """Of the dots of a press, (k, 2) in mm."""
+def dot_places_mm(task: KernelTask) -> Floats:
+    """Places (k, 2) in mm of the dots of a press."""
     dot = task.press.dot
     return np.asarray(dot.origin_mm[:2] + dot.tips_mm[:, :2])
 
 
 def beside_matrix(kernel: ArrayKernel, matrix: CrosstalkMatrix) -> list[KernelCheck]:
-    """The presses of the matrix, which are on the configured mesh."""
+    """Errors of the kernel beside the presses of the matrix, which are on the configured mesh."""
     case = matrix.case
     found = []
     for number in matrix.solved:
@@ -91,9 +91,9 @@ def kernel_of(
     tasks = grid.tasks()
     x, y = grid.nodes_mm
     names = {f"a dot at {x[i]:.2f}, {y[j]:.2f} mm": (i, j) for i, j in tasks}
-    presses = all_pressed({name: tasks[index] for name, index in names.items()}, told, executor)
-    kernel = filled(grid, {names[name]: press for name, press in presses.items()})
-    return kernel, [*measured(kernel, check_presses(case), told, executor), *beside_matrix(kernel, matrix)]
+    presses = solve_all({name: tasks[index] for name, index in names.items()}, told, executor)
+    kernel = fill_kernel(grid, {names[name]: press for name, press in presses.items()})
+    return kernel, [*measure_errors(kernel, check_presses(case), told, executor), *beside_matrix(kernel, matrix)]
 
 
 UNITS = {
@@ -109,7 +109,9 @@ UNITS = {
 def with_about(
     kernel: ArrayKernel, case: ArrayCase, capacitance_pF: Floats, checks: list[KernelCheck], said: Mapping[str, object]
 ) -> ArrayKernel:
-    """What kernel.json says: where the segments are, the dot, units, and the errors; said : what the command adds."""
+    """The kernel with the content of kernel.json: where the segments are, the dot, units, and the errors; said : what
+    the command adds.
+    """
     layout, dot = case.layout, case.press_over(case.layout.places[0]).dot
     about = {
         "labels": [place.label for place in layout.places],
@@ -132,7 +134,7 @@ def with_about(
 
 
 def worst(checks: list[KernelCheck]) -> dict[str, float]:
-    """The largest errors of all presses."""
+    """Largest errors of all presses in percent, of force and charge."""
     return {
         "force_percent": max(one.force_percent for one in checks),
         "charge_percent": max(one.charge_percent for one in checks),

@@ -50,7 +50,8 @@ KEPT = ("depth_mm", "force_N", "charge_pC", "sinking_mm")
 
 @dataclass(frozen=True)
 class KernelPress:
-    """depth_mm, force_N (s,); charge_pC (s, n); sinking_mm (s, p, q) of the resting surface at the nodes of the grid.
+    """One press of a kernel. depth_mm, force_N (s,); charge_pC (s, n); sinking_mm (s, p, q) of the resting surface at
+    the nodes of the grid.
 
     failure : why it stopped, "" where it converged.
     """
@@ -71,18 +72,18 @@ class KernelTask:
 
     @property
     def where(self) -> str:
-        """In words."""
+        """Words for the place of the press."""
         x, y = self.config.dot.offset_mm
         return f"the press at x = {x:.3g} mm, y = {y:.3g} mm"
 
     @property
     def press(self) -> PreparedPress:
-        """What is solved."""
+        """The press that is solved."""
         return PreparedPress(self.config)
 
 
-def by_one_dot(case: ArrayCase, x_mm: float, y_mm: float, detail: KernelDetail = USUAL_DETAIL) -> Config:
-    """A press of the kernel: on a coarser mesh, by one dot at a place in the frame of the array."""
+def one_dot_config(case: ArrayCase, x_mm: float, y_mm: float, detail: KernelDetail = USUAL_DETAIL) -> Config:
+    """Configuration of a press of the kernel: on a coarser mesh, by one dot at a place in the frame of the array."""
     config = case.config
     names = ("element_size_mm", "contact_element_size_mm")
     sizes = {name: detail.coarser * getattr(config.mesh, name) for name in names}
@@ -95,14 +96,14 @@ def by_one_dot(case: ArrayCase, x_mm: float, y_mm: float, detail: KernelDetail =
     )
 
 
-def recalled(task: KernelTask) -> KernelPress | None:
-    """A press that was solved before."""
+def recall(task: KernelTask) -> KernelPress | None:
+    """The press of a task from the disk, None where it was not solved before."""
     return read_arrays(_path(task), lambda arrays: KernelPress(**{name: arrays[name] for name in KEPT}))
 
 
-def pressed(task: KernelTask) -> KernelPress:
-    """Solve a press; one that converges is kept. InputError, MeshingError."""
-    found = _solved(task)
+def solve_task(task: KernelTask) -> KernelPress:
+    """Solve the press of a task; one that converges is kept. InputError, MeshingError."""
+    found = _solve(task)
     _keep(task, found)
     return found
 
@@ -117,7 +118,7 @@ def _path(task: KernelTask) -> Path:
     return cache_folder() / f"kernel-{data_hash([source_hash(__name__), input_hash(task.config), task.nodes_mm])}.npz"
 
 
-def _solved(task: KernelTask) -> KernelPress:
+def _solve(task: KernelTask) -> KernelPress:
     result = task.press.solve()
     steps = result.steps
     return KernelPress(
@@ -130,7 +131,7 @@ def _solved(task: KernelTask) -> KernelPress:
 
 
 def sinking_mm(result: PressResult, step: int, nodes_mm: tuple[tuple[float, ...], tuple[float, ...]]) -> Floats:
-    """(p, q) by how much the surface that a dot can touch has sunk at the nodes of a grid, in mm."""
+    """Depth (p, q) in mm by which the surface that a dot can touch has sunk at the nodes of a grid."""
     fields = result.steps[step].fields
     xy = result.tet_mesh.points_mm[fields.contact_nodes, :2]
     sunk = -1e3 * fields.displacement_m[fields.contact_nodes, 2]
@@ -172,7 +173,7 @@ GridNode = tuple[int, int]
 
 @dataclass(frozen=True)
 class KernelGrid:
-    """Where a kernel is pressed, and how finely. nodes_mm : axes."""
+    """Nodes at which the array is pressed for a kernel, and how finely. nodes_mm : axes."""
 
     case: ArrayCase
     nodes_mm: tuple[tuple[float, ...], tuple[float, ...]]
@@ -195,7 +196,7 @@ class KernelGrid:
         """The presses that are solved, by their nodes."""
         x, y = self.nodes_mm
         return {
-            (i, j): KernelTask(by_one_dot(self.case, x[i], y[j], self.detail), self.nodes_mm)
+            (i, j): KernelTask(one_dot_config(self.case, x[i], y[j], self.detail), self.nodes_mm)
             for i, j in dict.fromkeys(map(self.stands_for, self.all))
         }
 
@@ -211,15 +212,15 @@ class KernelGrid:
 
 
 def grid_of(case: ArrayCase, detail: KernelDetail = USUAL_DETAIL) -> KernelGrid:
-    """The grid of an array."""
+    """The grid of nodes over an array."""
     return KernelGrid(case, (grid_mm(case, 0, detail.per_pitch), grid_mm(case, 1, detail.per_pitch)), detail)
 
 
-def all_pressed(tasks: Mapping[str, KernelTask], told: Report, executor: Executor) -> dict[str, KernelPress]:
-    """Each task solved. StoppedPressError for one that does not converge; the others are kept."""
-    found = {name: press for name, task in tasks.items() if (press := recalled(task)) is not None}
+def solve_all(tasks: Mapping[str, KernelTask], told: Report, executor: Executor) -> dict[str, KernelPress]:
+    """Solve each task. StoppedPressError for one that does not converge; the others are kept."""
+    found = {name: press for name, task in tasks.items() if (press := recall(task)) is not None}
     left = {name: (task,) for name, task in tasks.items() if name not in found}
-    for name, future in completed_calls(executor, pressed, left):
+    for name, future in completed_calls(executor, solve_task, left):
         press = future.result()
         if press.failure:
             raise StoppedPressError(f"{tasks[name].where} did not converge: {press.failure}")
@@ -229,8 +230,8 @@ def all_pressed(tasks: Mapping[str, KernelTask], told: Report, executor: Executo
     return found
 
 
-def filled(grid: KernelGrid, presses: Mapping[GridNode, KernelPress]) -> ArrayKernel:
-    """The kernel without what is said of it."""
+def fill_kernel(grid: KernelGrid, presses: Mapping[GridNode, KernelPress]) -> ArrayKernel:
+    """The kernel of these presses, with nothing said of it yet."""
     shape, first = [len(nodes) for nodes in grid.nodes_mm], next(iter(presses.values()))
     depth, count = first.depth_mm, first.charge_pC.shape[1]
     values = np.zeros((*shape, len(depth), count + 1))
@@ -250,5 +251,6 @@ def filled(grid: KernelGrid, presses: Mapping[GridNode, KernelPress]) -> ArrayKe
 
 
 def _fine(nodes: tuple[float, ...]) -> Floats:
+    """Even nodes between the first and the last, at most FINE_MM apart."""
     count = int(np.ceil((nodes[-1] - nodes[0]) / FINE_MM - 1e-9))
     return np.linspace(nodes[0], nodes[-1], count + 1)

@@ -28,15 +28,17 @@ class CrosstalkMatrix:
 
     @property
     def layout(self) -> ArrayLayout:
-        """Where the segments lie."""
+        """Layout of the segments."""
         return self.case.layout
 
     def press(self, number: int) -> Signals:
         """The solved press that stands for that of one segment."""
         return self.solved[min(self.case.images(number))]
 
-    def seen_from(self, number: int) -> list[int]:
-        """For each segment j, the segment of the solved press that is its image when segment number is pressed."""
+    def image_numbers(self, number: int) -> list[int]:
+        """Number of the segment of the solved press that is the image of each segment, when one of that number is
+        pressed.
+        """
         columns, rows = len(self.layout.centres(0)), len(self.layout.centres(1))
         stands_for = divmod(min(self.case.images(number)), columns)
         row, column = divmod(number, columns)
@@ -46,34 +48,34 @@ class CrosstalkMatrix:
             for r, c in (divmod(other, columns) for other in range(rows * columns))
         ]
 
-    def _histories(self, name: str) -> Floats:
+    def _all_histories(self, name: str) -> Floats:
         """A quantity (n, s, n) of all presses: pressed segment, step, segment that is read."""
         count = len(self.layout.places)
-        return np.array([getattr(self.press(i), name)[:, self.seen_from(i)] for i in range(count)])
+        return np.array([getattr(self.press(i), name)[:, self.image_numbers(i)] for i in range(count)])
 
     @cached_property
     def charge_pC(self) -> Floats:
-        """(n, s, n)."""
-        return self._histories("charge_pC")
+        """Charge (n, s, n): pressed segment, step, segment that is read."""
+        return self._all_histories("charge_pC")
 
     @cached_property
     def voltage_V(self) -> Floats:
-        """Open circuit, (n, s, n)."""
-        return self._histories("voltage_V")
+        """Voltage (n, s, n) at open circuit."""
+        return self._all_histories("voltage_V")
 
     @cached_property
     def signal_V(self) -> Floats:
-        """What is read (n, s, n): behind the amplifiers where there are some, else at open circuit."""
-        return self._histories("signal_V")
+        """Voltage (n, s, n) that is read: behind the amplifiers where there are some, else at open circuit."""
+        return self._all_histories("signal_V")
 
     @property
     def depth_mm(self) -> Floats:
-        """(n, s)."""
+        """Depth (n, s) of the dot in each press."""
         return np.array([self.press(i).depth_mm for i in range(len(self.layout.places))])
 
     @property
     def force_N(self) -> Floats:
-        """(n, s)."""
+        """Force (n, s) on the dot in each press."""
         return np.array([self.press(i).force_N for i in range(len(self.layout.places))])
 
     @property
@@ -85,7 +87,7 @@ class CrosstalkMatrix:
 
     @property
     def crosstalk_percent(self) -> Floats:
-        """At full load (n, n): 100 on the diagonal."""
+        """Voltage (n, n) at full load in percent of that of the pressed segment: 100 on the diagonal."""
         return np.asarray(100.0 * self.ratio[:, -1])
 
     @property
@@ -132,11 +134,11 @@ class CrosstalkMatrix:
 
 
 def matrix_presses(case: ArrayCase) -> dict[str, PreparedPress]:
-    """Those that are no image of another one, by their names."""
-    places = [case.layout.places[number] for number in case.solved]
+    """Presses that are no image of another one, by their names."""
+    places = [case.layout.places[number] for number in case.solved_numbers]
     return {f"the press of {place.label}": case.press_over(place) for place in places}
 
 
 def crosstalk(case: ArrayCase, solve: ArrayPresses) -> CrosstalkMatrix:
     """Solve every press that is no image of another one. StoppedPressError for one that does not converge."""
-    return CrosstalkMatrix(case, dict(zip(case.solved, solve(matrix_presses(case)).values(), strict=True)))
+    return CrosstalkMatrix(case, dict(zip(case.solved_numbers, solve(matrix_presses(case)).values(), strict=True)))

@@ -49,7 +49,7 @@ class Signals:
 
     @property
     def signal_V(self) -> Floats:
-        """What is read (s, n): behind the amplifiers where there are some, else at open circuit."""
+        """Voltage (s, n) that is read: behind the amplifiers where there are some, else at open circuit."""
         return self.voltage_V if self.readout_voltage_V is None else self.readout_voltage_V
 
 
@@ -68,27 +68,28 @@ class ArrayPresses:
         self._known: dict[Path, Signals] = {}
 
     def __call__(self, presses: Mapping[str, PreparedPress]) -> dict[str, Signals]:
-        """Of each press by its name. StoppedPressError where one did not converge, InputError, MeshingError."""
+        """Signals of each press by its name. StoppedPressError where one did not converge, InputError, MeshingError."""
         paths = {name: _path(press) for name, press in presses.items()}
-        self._known |= {path: found for path in paths.values() if (found := self._recalled(path)) is not None}
+        self._known |= {path: found for path in paths.values() if (found := self._recall(path)) is not None}
         missing = {path: name for name, path in paths.items() if path not in self._known}
         calls = {path: (presses[name].config,) for path, name in missing.items()}
         there = len(presses) - len(missing)
-        for number, (path, future) in enumerate(completed_calls(self._executor, signals_of_config, calls), 1 + there):
-            self.know(path, converged(future.result(), missing[path]))
+        for number, (path, future) in enumerate(completed_calls(self._executor, solve_signals, calls), 1 + there):
+            self.know(path, require_converged(future.result(), missing[path]))
             self._told(number, len(presses), missing[path])
         return {name: self._known[path] for name, path in paths.items()}
 
-    def _recalled(self, path: Path) -> Signals | None:
-        return self._known.get(path) or recalled(path)
+    def _recall(self, path: Path) -> Signals | None:
+        """Signals of a press that this object or the disk knows, else None."""
+        return self._known.get(path) or recall(path)
 
     def with_fields(self, press: PreparedPress, name: str, others: Mapping[str, PreparedPress]) -> PressResult:
         """The solver's own result of a press, solved beside others, which are then known. Errors as for a call."""
-        future = self._executor.submit(solved_config, press.config)
+        future = self._executor.submit(solve_config, press.config)
         self({key: other for key, other in others.items() if _path(other) != _path(press)})
         found, result = future.result()
         assert isinstance(result, PressResult)
-        self.know(_path(press), converged(found, name))
+        self.know(_path(press), require_converged(found, name))
         return result
 
     def know(self, path: Path, found: Signals) -> None:
@@ -97,18 +98,18 @@ class ArrayPresses:
         _keep(path, found)
 
 
-def signals_of_config(config: Config) -> Signals:
-    """As signals, of the press of a configuration."""
+def solve_signals(config: Config) -> Signals:
+    """Signals of the press of a configuration."""
     return signals(PreparedPress(config))
 
 
-def solved_config(config: Config) -> tuple[Signals, PressResult]:
-    """The same with the solver's own result."""
-    return _solved(PreparedPress(config))
+def solve_config(config: Config) -> tuple[Signals, PressResult]:
+    """Signals of the press of a configuration, and the solver's own result."""
+    return _solve(PreparedPress(config))
 
 
-def converged(found: Signals, what: str) -> Signals:
-    """The same signals. StoppedPressError where the press stopped short."""
+def require_converged(found: Signals, what: str) -> Signals:
+    """Return the signals of a press. StoppedPressError where it stopped short."""
     if found.failure is not None:
         raise StoppedPressError(f"{what} did not converge: {found.failure}")
     return found
@@ -119,16 +120,16 @@ def signals(press: PreparedPress) -> Signals:
 
     InputError, MeshingError.
     """
-    return recalled(_path(press)) or _solved(press)[0]
+    return recall(_path(press)) or _solve(press)[0]
 
 
-def recalled(path: Path) -> Signals | None:
-    """The numbers of a press that was solved before."""
+def recall(path: Path) -> Signals | None:
+    """Signals of a press in a file, None where it was not solved before."""
     kept = read_with_checksum(path)
-    return None if kept is None else _decoded(json.loads(kept))
+    return None if kept is None else _decode(json.loads(kept))
 
 
-def _solved(press: PreparedPress) -> tuple[Signals, PressResult]:
+def _solve(press: PreparedPress) -> tuple[Signals, PressResult]:
     begun = time.perf_counter()
     result = press.solve()
     found = signals_of(press, result, time.perf_counter() - begun)
@@ -137,13 +138,13 @@ def _solved(press: PreparedPress) -> tuple[Signals, PressResult]:
 
 
 def _path(press: PreparedPress) -> Path:
-    """Where a press is kept."""
+    """File in which a press is kept."""
     key = data_hash([source_hash(__name__), input_hash(press.config)])
     return cache_folder() / f"array-{key}.json"
 
 
 def signals_of(press: PreparedPress, result: PressResult, solve_s: float) -> Signals:
-    """The numbers of a result."""
+    """Signals of the result of a press; solve_s : time of its solution in s."""
     pressed, steps = Pressed(press, result), result.steps
     readout = pressed.channel_voltages_V
     return Signals(
@@ -170,6 +171,6 @@ def _keep(path: Path, found: Signals) -> None:
         write_with_checksum(path, json.dumps(tree).encode())
 
 
-def _decoded(tree: dict[str, Any]) -> Signals:
+def _decode(tree: dict[str, Any]) -> Signals:
     arrays = {key: np.array(value) for key, value in tree.items() if isinstance(value, list)}
     return Signals(**{**tree, **arrays, "warnings": tuple(tree["warnings"])})

@@ -90,12 +90,12 @@ class Sides:
 
     @property
     def name(self) -> str:
-        """In words."""
+        """Words for the sides."""
         spring = f" {self.stiffness_N_per_mm3:.4g} N/mm3" if self.boundary == "elastic" else ""
         return f"lone segment, {self.boundary}{spring}, {' '.join(self.held) or 'no layer'} held"
 
     def press(self, case: ArrayCase) -> PreparedPress:
-        """Of one segment of an array alone."""
+        """Press of one segment of an array alone, with these sides."""
         update = {
             "boundary": self.boundary,
             "held_layers": self.held,
@@ -109,19 +109,19 @@ FREE = Sides("free")
 
 
 def lone_sides(layout: ArrayLayout) -> list[Sides]:
-    """All that are pressed whatever comes out; none for one segment."""
+    """Sides that are pressed whatever comes out; none for one segment."""
     if len(layout.places) == 1:
         return []
     return [Sides("elastic", held, k) for held in held_candidates(layout) for k in STIFFNESSES_N_PER_MM3] + [FREE]
 
 
 def lone_presses(case: ArrayCase, sides: Sequence[Sides]) -> dict[str, PreparedPress]:
-    """By their names."""
+    """Presses of the lone segment with each of the sides, by their names."""
     return {one.name: one.press(case) for one in sides}
 
 
 def effective_sides(matrix: CrosstalkMatrix, solve: ArrayPresses) -> dict[str, EffectiveSides]:
-    """For each role that the array has; none for one segment. StoppedPressError.
+    """Sides that stand best for each role that the array has; none for one segment. StoppedPressError.
 
     Lone segments are pressed over a range of stiffness, for each set of layers that springs may hold. Their force and
     voltage, interpolated over the logarithm of the stiffness, give the best set and stiffness; that one is pressed
@@ -137,7 +137,7 @@ def effective_sides(matrix: CrosstalkMatrix, solve: ArrayPresses) -> dict[str, E
         for held in held_candidates(layout)
     }
     roles = representatives(layout)
-    targets = {role: _response(matrix.press(n), by_force, matrix.seen_from(n)[n]) for role, n in roles.items()}
+    targets = {role: _response(matrix.press(n), by_force, matrix.image_numbers(n)[n]) for role, n in roles.items()}
     bests = {
         role: min((_best(held, curves, target) for held, curves in families.items()), key=lambda one: one.mean_square)
         for role, target in targets.items()
@@ -153,12 +153,12 @@ def effective_sides(matrix: CrosstalkMatrix, solve: ArrayPresses) -> dict[str, E
 
 
 def _response(found: Signals, by_force: bool, number: int = 0) -> Floats:
-    """What answers the load, force or depth, and the voltage of the pressed segment, (2, s)."""
+    """Force, or depth under a prescribed force, and voltage of the pressed segment, (2, s)."""
     return np.stack([found.depth_mm if by_force else found.force_N, found.voltage_V[:, number]])
 
 
 def _errors(one: Floats, target: Floats) -> Floats:
-    """Relative to the largest value of each, (2, s)."""
+    """Errors (2, s) of a response relative to the largest value of each of its rows."""
     return np.asarray((one - target) / np.abs(target).max(axis=1, keepdims=True))
 
 
@@ -180,7 +180,7 @@ class _Interpolated:
 
     @property
     def sides(self) -> Sides:
-        """To be pressed."""
+        """Sides with the best stiffness, which are then pressed."""
         return Sides("elastic", self.held, self.stiffness_N_per_mm3)
 
 
@@ -202,5 +202,5 @@ def _best(held: tuple[LayerName, ...], lone: Sequence[Floats], target: Floats) -
 
 
 def as_dict(sides: EffectiveSides) -> dict[str, Any]:
-    """As array.json has it."""
+    """The sides as array.json has them."""
     return {**vars(sides), **{name: vars(getattr(sides, name)) for name in ("best", "free", "clamped")}}

@@ -35,7 +35,7 @@ class CellPress:
 
     @property
     def errors_percent(self) -> Floats:
-        """Of superposition at full load, (n,)."""
+        """Error (n,) of superposition at full load, of the largest charge."""
         charge = self.signals.charge_pC[-1]
         return np.asarray(100.0 * (self.superposed_pC[-1] - charge) / np.abs(charge).max())
 
@@ -54,7 +54,7 @@ class CellPress:
 
 @dataclass(frozen=True)
 class ArrayStudy:
-    """shown : the press whose fields are drawn and written, with its result and its title.
+    """All results of an array. shown : the press whose fields are drawn and written, with its result and its title.
 
     kernel, checks : where they were asked for, the kernel and its errors beside presses of the whole array.
     """
@@ -98,7 +98,7 @@ def study(case: ArrayCase, executor: Executor, progress: Progress, parts: frozen
 
 
 def _known_presses(case: ArrayCase, parts: frozenset[Part]) -> dict[str, PreparedPress]:
-    """All that are solved whatever comes out, in one go, so that no core waits in between."""
+    """Presses that are solved whatever comes out, in one go, so that no core waits in between."""
     presses = {**matrix_presses(case), **lone_presses(case, lone_sides(case.layout))}
     return {**presses, **variant_presses(case)[0]} if "variants" in parts else presses
 

@@ -64,7 +64,7 @@ def ways(layout: ArrayLayout) -> dict[str, Array]:
 
 
 def variant_presses(case: ArrayCase) -> tuple[dict[str, PreparedPress], dict[str, str]]:
-    """Of each way of joining, by its name, the press of the segment nearest to the middle, or why there is none."""
+    """Press of the segment nearest to the middle for each way of joining, by its name, or why there is none."""
     presses, why_not = {}, {}
     for name, array in ways(case.layout).items():
         other = ArrayCase(case.config.model_copy(update={"array": array}))
@@ -82,7 +82,7 @@ def _middle(case: ArrayCase) -> SegmentPlace:
 
 
 def worth(case: ArrayCase, solve: ArrayPresses) -> list[Worth]:
-    """Of each way of joining, with the segment nearest to the middle pressed. StoppedPressError."""
+    """Worth of each way of joining, with the segment nearest to the middle pressed. StoppedPressError."""
     presses, why_not = variant_presses(case)
     solved, place, found = solve(presses), _middle(case), []
     number = case.layout.places.index(place)

@@ -88,7 +88,7 @@ def _kit_json(out: Path) -> str | None:
 
 def _kit_warnings(config: Config) -> list[str]:
     """Warnings of the design, without repetition. InputError for what cannot be built, or pressed for the budget."""
-    array = [] if config.array is None else ArrayCase(config).built
+    array = [] if config.array is None else ArrayCase(config).design_warnings
     case = PreparedPress(budget_config(config))
     return list(dict.fromkeys([*array, *case.warnings]))
 

@@ -19,7 +19,7 @@ from mesh.types import MeshingError
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.kernel import ArrayKernel
 from softdot.arrays.kernel_errors import with_about
-from softdot.arrays.kernel_presses import KernelDetail, KernelPress, filled, grid_of, pressed, recalled
+from softdot.arrays.kernel_presses import KernelDetail, KernelPress, fill_kernel, grid_of, recall, solve_task
 from softdot.config.hashes import config_hash
 from softdot.config.schema import Config
 from softdot.progress import Untold
@@ -94,7 +94,7 @@ def coarse_kernel(config: Config, detail: KernelDetail = COARSE_KERNEL) -> Array
     grid = grid_of(case, detail)
     presses: dict[tuple[int, int], KernelPress] = {}
     for node, task in grid.tasks().items():
-        presses[node] = recalled(task) or pressed(task)
+        presses[node] = recall(task) or solve_task(task)
         if presses[node].failure:
             raise StoppedDesignError(f"{task.where} did not converge: {presses[node].failure}")
     said = {
@@ -102,7 +102,7 @@ def coarse_kernel(config: Config, detail: KernelDetail = COARSE_KERNEL) -> Array
         "config_hash": config_hash(config),
         "config": config.model_dump(mode="json"),
     }
-    kernel = with_about(filled(grid, presses), case, case.capacitance_pF, [], said)
+    kernel = with_about(fill_kernel(grid, presses), case, case.capacitance_pF, [], said)
     return check_kernel(kernel, "the kernel of this design")
 
 

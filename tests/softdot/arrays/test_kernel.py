@@ -10,8 +10,8 @@ from foundation.errors import InputError
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.kernel import ArrayKernel, load_kernel
 from softdot.arrays.kernel_checks import cells_by_chance, every_cell, places_by_chance
-from softdot.arrays.kernel_errors import check, kernel_of, measured, places_of
-from softdot.arrays.kernel_presses import KernelPress, KernelTask, filled, grid_of
+from softdot.arrays.kernel_errors import check, dot_places_mm, kernel_of, measure_errors
+from softdot.arrays.kernel_presses import KernelPress, KernelTask, fill_kernel, grid_of
 from softdot.arrays.matrix import crosstalk
 from softdot.arrays.presses import ArrayPresses
 from softdot.config.loading import load_config
@@ -145,7 +145,7 @@ def test_mirror_images_fill_the_table_where_no_press_was_solved():
     grid = grid_of(case)
     x, y = grid.nodes_mm
     assert len(grid.tasks()) < 0.35 * len(grid.all)
-    kernel = filled(grid, {node: known(case, grid.nodes_mm, x[node[0]], y[node[1]]) for node in grid.tasks()})
+    kernel = fill_kernel(grid, {node: known(case, grid.nodes_mm, x[node[0]], y[node[1]]) for node in grid.tasks()})
     for i, j in grid.all[::7]:
         told = known(case, grid.nodes_mm, x[i], y[j])
         np.testing.assert_allclose(kernel.sinking_mm[i, j], told.sinking_mm, atol=1e-12)
@@ -170,7 +170,7 @@ def test_a_press_of_the_table_itself_has_no_error_and_another_one_has():
 
 
 def places(config):
-    return places_of(KernelTask(config, ((0.0,), (0.0,))))
+    return dot_places_mm(KernelTask(config, ((0.0,), (0.0,))))
 
 
 def test_cells_by_chance_stand_where_their_dots_are_said_to_be():
@@ -233,6 +233,6 @@ def test_a_kernel_foretells_presses_that_took_no_part_in_it():
     kernel, stated = kernel_of(case, matrix, lambda *_: None)
     worst = max(one.charge_percent for one in stated)
     assert worst < 15.0  # twice the element sizes count too
-    for one in measured(kernel, places_by_chance(case, 4, seed=1), lambda *_: None):
+    for one in measure_errors(kernel, places_by_chance(case, 4, seed=1), lambda *_: None):
         assert one.charge_percent < 1.5 * worst
         assert one.force_percent < 10.0

@@ -31,9 +31,9 @@ def made_up(charges_pC, failure=None) -> Signals:
 
 def test_mirror_images_are_not_solved_again():
     """Two by three: a corner and the middle of a side. A row of five: three. A film drawn aslant: all."""
-    assert array(2, 3).solved == [0, 2]
-    assert array(5, 1).solved == [0, 1, 2]
-    assert array(2, 3, segment={"film": {"draw_angle_deg": 30.0}}).solved == list(range(6))
+    assert array(2, 3).solved_numbers == [0, 2]
+    assert array(5, 1).solved_numbers == [0, 1, 2]
+    assert array(2, 3, segment={"film": {"draw_angle_deg": 30.0}}).solved_numbers == list(range(6))
 
 
 @for_each(
@@ -47,12 +47,12 @@ def test_mirror_images_are_not_solved_again():
 def test_channels_that_differ_have_no_images(name, parameters):
     """An amplifier whose first channel hears the others, leaks or filters reads other presses otherwise."""
     one = {"name": name, "component": "channel-1", "parameters": parameters}
-    assert array(2, 3, tables={"mechanisms": [one]}).solved == list(range(6))
+    assert array(2, 3, tables={"mechanisms": [one]}).solved_numbers == list(range(6))
 
 
 def test_a_dot_beside_the_middle_keeps_the_symmetry_across():
     """Moved along x, it stands over a column of its own; rows are images of each other still."""
-    assert array(2, 3, tables={"dot": {"offset_mm": [0.3, 0.0]}}).solved == [0, 1, 2, 3]
+    assert array(2, 3, tables={"dot": {"offset_mm": [0.3, 0.0]}}).solved_numbers == [0, 1, 2, 3]
 
 
 def test_rows_of_the_matrix_are_those_of_the_solved_presses_turned_over():
@@ -114,7 +114,7 @@ def test_a_press_that_stops_is_told_by_its_segment(monkeypatch, tmp_path):
     """Nothing is made of the others."""
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
     stopped = replace(made_up([1.0, 1.0]), failure="step 1 of 2 stopped")
-    monkeypatch.setattr(presses_module, "signals_of_config", lambda _config: stopped)
+    monkeypatch.setattr(presses_module, "solve_signals", lambda _config: stopped)
     with pytest.raises(StoppedPressError, match="the press of segment-r1c1 did not converge: step 1 of 2 stopped"):
         crosstalk(array(), ArrayPresses())
 
