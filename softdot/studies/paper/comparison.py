@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from softdot.studies.paper.published import Published, inconsistencies, published
+from softdot.studies.paper.published import Published, inconsistencies, published_numbers
 from softdot.studies.paper.section import Answer, Cell, PaperTable, Section
 
 UNANSWERED = Answer(None, "not calculated here")
@@ -12,7 +12,7 @@ UNANSWERED = Answer(None, "not calculated here")
 def answers(sections: Sequence[Section]) -> dict[str, Answer]:
     """Our value of every published number, by its key."""
     found = {key: answer for section in sections for key, answer in section.answers.items()}
-    return {key: found.get(key, UNANSWERED) for key in published()}
+    return {key: found.get(key, UNANSWERED) for key in published_numbers()}
 
 
 def comparisons(sections: Sequence[Section]) -> list[dict[str, Any]]:
@@ -24,7 +24,7 @@ def comparisons(sections: Sequence[Section]) -> list[dict[str, Any]]:
             "unit": number.unit, "paper": number.value, "misprint": number.misprint,
             "ours": ours[key].ours, "ratio": _ratio(number, ours[key]), "remark": ours[key].remark,
         }
-        for key, number in published().items()
+        for key, number in published_numbers().items()
     ]  # fmt: skip
 
 

@@ -52,7 +52,7 @@ class Inconsistency:
 
 
 @cache
-def published() -> dict[str, Published]:
+def published_numbers() -> dict[str, Published]:
     """Every printed number by its key, in the order of the paper."""
     tables = _tables()
     misprints = tables["misprint"]
@@ -65,7 +65,7 @@ def published() -> dict[str, Published]:
 
 @cache
 def inconsistencies() -> tuple[Inconsistency, ...]:
-    """What is wrong or missing in the paper beyond single numbers too."""
+    """Errors and gaps of the paper beyond single numbers."""
     return tuple(Inconsistency(**entry) for entry in _tables()["inconsistency"])
 
 

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from softdot.studies.proof.world.bench import Bench
-from softdot.studies.proof.world.cases import Case, pressed_again
+from softdot.studies.proof.world.cases import Case, press_again
 from softdot.studies.proof.world.reality import Signals
 from softdot.studies.proof.world.rigs import BENCHES
-from softdot.studies.proof.world.runs import Run, traced
+from softdot.studies.proof.world.runs import Run, traced_run
 
 SHAPE = frozenset({"speed_factor", "hold_s", "displacement_mm", "cycles"})
 """Changes that the waveform holds already."""
@@ -27,7 +27,7 @@ def asked_run(bench: Bench, experiment: Mapping[str, Any], wave: str) -> Run | N
     added_pF = changes.get(CAPACITANCE, bench.amplifier.capacitance_pF) - bench.amplifier.capacitance_pF
     resistance = changes.get(RESISTOR, like.resistance_MOhm)
     label = f"as asked for, {experiment['waveform'].removesuffix('.csv')}"
-    return traced(label, time_s, path_mm, resistance, added_pF, like.place_mm, RECORDS in changes)
+    return traced_run(label, time_s, path_mm, resistance, added_pF, like.place_mm, RECORDS in changes)
 
 
 def with_asked(
@@ -43,7 +43,7 @@ def with_asked(
         if run is None:
             continue
         try:
-            more = pressed_again(case, run, number)
+            more = press_again(case, run, number)
         except (RuntimeError, FloatingPointError):  # no equilibrium that deep
             continue
         bench, signals = replace(bench, runs=(*bench.runs, run)), [*signals, more]

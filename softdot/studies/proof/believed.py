@@ -101,7 +101,7 @@ def linear_opinion(
     columns_of: Callable[[Signals, Signals, str], Floats],
     fit: Callable[[Floats, Floats], tuple[Floats, Floats]],
 ) -> Opinion:
-    """What a linear fit of the residuals says, whose columns are the terms once or several times; the one that is
+    """Opinion of a linear fit of the residuals, whose columns are the terms once or several times; the one that is
     largest in any channel names.
 
     columns_of(run, its model, channel) : (t, k). fit(inputs (n, k), target (n,)) : weights (k,) and sizes (k,).

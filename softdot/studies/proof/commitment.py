@@ -36,6 +36,6 @@ def digest_of(truth: Mapping[str, Any], salt: str) -> str:
     return hashlib.sha256(f"{salt}\n{text}".encode()).hexdigest()
 
 
-def verified(truth: Mapping[str, Any], salt: str, digest: str) -> bool:
-    """Whether truth and salt are those of the digest."""
+def matches_digest(truth: Mapping[str, Any], salt: str, digest: str) -> bool:
+    """Whether truth and salt have this digest."""
     return secrets.compare_digest(digest_of(truth, salt), digest)

@@ -28,8 +28,8 @@ class Heard:
     next_presses: Mapping[str, str] = field(default_factory=dict)
 
 
-def diagnosed(files: Mapping[str, str], cache: Path, limit_s: float, options: tuple[str, ...] = ()) -> Heard:
-    """Diagnose a recording, name -> text of its files, within a limit of time."""
+def diagnose_isolated(files: Mapping[str, str], cache: Path, limit_s: float, options: tuple[str, ...] = ()) -> Heard:
+    """Diagnose a recording, name -> text of its files, in a process of its own and within a limit of time in s."""
     with scratch_folder() as scratch:
         folder = scratch.resolve()
         recording = folder / "recording"

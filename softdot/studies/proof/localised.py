@@ -20,20 +20,22 @@ TESTED, LEVEL = 1000, 0.001
 """Samples of a channel, far enough apart to be taken as independent, and the error rate of all F tests of it."""
 
 
-def localised(bench: Bench, runs: Sequence[Signals], model: Sequence[Signals]) -> Opinion:
-    """Each term in each phase alone, taken in while a partial F test is for it; what explains most names."""
+def localised_regression(bench: Bench, runs: Sequence[Signals], model: Sequence[Signals]) -> Opinion:
+    """Opinion of a regression on each term in each phase alone, taken in while a partial F test is for it; the one that
+    explains most names.
+    """
 
     def columns_of(run: Signals, own: Signals, channel: str) -> Floats:
         terms = terms_of(bench, run, own, channel)
         return np.concatenate([terms * phase[:, None] for phase in _phases(bench, run)], axis=1)
 
-    return linear_opinion(bench, runs, model, columns_of, _selected)
+    return linear_opinion(bench, runs, model, columns_of, _fit_selected)
 
 
-def _selected(inputs: Floats, target: Floats) -> tuple[Floats, Floats]:
+def _fit_selected(inputs: Floats, target: Floats) -> tuple[Floats, Floats]:
     """Weights (k,) of the columns that are taken in, and the squares (k,) that each takes."""
     some = np.linspace(0, len(target) - 1, min(TESTED, len(target))).astype(int)
-    gains = _taken_in(inputs[some], target[some])
+    gains = _select_forward(inputs[some], target[some])
     columns, weights, sizes = list(gains), np.zeros(inputs.shape[1]), np.zeros(inputs.shape[1])
     weights[columns] = np.linalg.lstsq(inputs[:, columns], target, rcond=None)[0]
     sizes[columns] = list(gains.values())
@@ -48,8 +50,8 @@ def _phases(bench: Bench, run: Signals) -> list[Floats]:
     return [part.astype(np.float64) for part in parts]
 
 
-def _taken_in(inputs: Floats, target: Floats) -> dict[int, float]:
-    """Column of inputs (n, k) -> squares of target (n,) that it takes, in the order of a forward selection."""
+def _select_forward(inputs: Floats, target: Floats) -> dict[int, float]:
+    """Select columns of inputs (n, k) forward: column -> squares of target (n,) that it takes, in order."""
     left, columns, found = target.copy(), inputs.copy(), dict[int, float]()
     while len(found) < columns.shape[1]:
         size = (columns**2).sum(axis=0)

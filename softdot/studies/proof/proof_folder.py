@@ -9,7 +9,7 @@ from typing import Any
 from foundation.checked_records import read_checked, write_checked
 from softdot.json_files import plain, write_json
 from softdot.output import Product, check_output
-from softdot.studies.proof.commitment import verified
+from softdot.studies.proof.commitment import matches_digest
 from softdot.studies.proof.world.cases import Case
 
 FORMAT = "softdot-proof/1"
@@ -43,7 +43,7 @@ def keep(place: Path, name: str, record: dict[str, Any]) -> None:
     write_checked(place / CASES / f"{name}.json", {**plain(record), "truth": record["truth"]})
 
 
-def kept(place: Path, case: Case, program: str) -> dict[str, Any] | None:
+def recall_record(place: Path, case: Case, program: str) -> dict[str, Any] | None:
     """The record of an earlier proof of the same case by the same program, whose commitment it fulfils; else None."""
     record = read_checked(place / CASES / f"{case.name}.json", "the case is made again")
     if record is None:
@@ -52,7 +52,7 @@ def kept(place: Path, case: Case, program: str) -> dict[str, Any] | None:
         committed = json.loads((place / COMMITMENTS / f"{case.name}.json").read_text("utf-8"))["sha256"]
         same = Case(**{**record["case"], "effects": tuple(record["case"]["effects"])}) == case
         ended = record["program"] == program and record["status"] == "scored"
-        if same and ended and verified(record["truth"], record["salt"], committed):
+        if same and ended and matches_digest(record["truth"], record["salt"], committed):
             return record
     return None
 

@@ -20,7 +20,7 @@ Item = TypeVar("Item")
 
 
 def rate(items: Iterable[Item], holds: Callable[[Item], bool]) -> dict[str, Any]:
-    """Of how many it holds, with the 95 % interval."""
+    """Share of the items for which a condition holds, with its 95 % interval."""
     found = [bool(holds(item)) for item in items]
     return share(sum(found), len(found))
 
@@ -94,7 +94,7 @@ def _by_size(scores: Sequence[Score]) -> list[dict[str, Any]]:
 
 
 def _by_mechanism(scores: Sequence[Score]) -> dict[str, Any]:
-    """Of clear effects and of all, by mechanism and component."""
+    """Rates of clear effects and of all, by mechanism and component."""
     names = sorted({s.truth for s in scores})
     return {
         " + ".join(f"{m} ({c})" for m, c in name): {

@@ -10,7 +10,9 @@ from softdot.studies.proof.world.cases import LEFT_OUT, NONE, OUTSIDE, SINGLE
 
 
 def rival_rates(records: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Of every rival: false names without effect, clear effects named, unknown ones left unnamed, held-out error."""
+    """Rates of every rival: false names without effect, clear effects named, unknown ones left unnamed,
+    held-out error.
+    """
     scored = [record for record in records if record["score"] is not None]
     names = sorted({name for record in scored for name in record["rivals"]})
     return {name: _of_rival(name, scored) for name in names}

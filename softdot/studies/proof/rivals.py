@@ -24,7 +24,7 @@ from softdot.studies.proof.believed import (
     residuals_of,
     terms_of,
 )
-from softdot.studies.proof.localised import localised
+from softdot.studies.proof.localised import localised_regression
 from softdot.studies.proof.world.arrays import Floats
 from softdot.studies.proof.world.bench import Bench
 from softdot.studies.proof.world.reality import Reality, Signals, baseline, noise_of, record
@@ -36,18 +36,19 @@ SPARSE = 0.05
 
 
 def opinions(bench_name: str, runs: Sequence[Signals]) -> dict[str, Opinion]:
-    """Of every rival that is installed."""
+    """Opinions on the runs of a bench by every rival that is installed, by name."""
     bench = BENCHES[bench_name]
-    believed = _believed(bench_name)
+    believed = _believed_runs(bench_name)
     found = {"gaussian process": _gaussian_process(bench, runs, believed), "always leakage": _leakage(bench, runs)}
-    found["localised sparse regression"] = localised(bench, runs, believed)
+    found["localised sparse regression"] = localised_regression(bench, runs, believed)
     if find_spec("pysindy") is not None:
         found["sparse regression"] = _sparse(bench, runs, believed)
     return found
 
 
 @lru_cache(maxsize=8)
-def _believed(bench_name: str) -> tuple[Signals, ...]:
+def _believed_runs(bench_name: str) -> tuple[Signals, ...]:
+    """Runs that the experimenter expects of a bench, without any effect."""
     bench = BENCHES[bench_name]
     return tuple(record(baseline(bench), bench))
 

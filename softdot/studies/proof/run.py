@@ -15,7 +15,7 @@ from softdot.log import LOG_FILE, log_file
 from softdot.progress import Logged, Progress
 from softdot.studies.proof import proof_folder as proof_files
 from softdot.studies.proof.score import Score
-from softdot.studies.proof.trial import Terms, tried
+from softdot.studies.proof.trial import Terms, try_case
 from softdot.studies.proof.world.cases import KINDS, Case, plan
 from softdot.studies.proof.world.effects import EFFECTS, KNOWN, STAGED, fits
 from softdot.studies.proof.world.rigs import BENCHES, OFFERED
@@ -24,7 +24,7 @@ from softdot.studies.proof.world.rigs import BENCHES, OFFERED
 def prove_case(case: Case, terms: Terms, place: Path, program: str) -> dict[str, Any]:
     """The record of a case, kept in the folder of the proof. Its digest is there before the diagnosis begins."""
     try:
-        record = tried(case, terms, lambda name, digest: proof_files.commit(place, name, digest))
+        record = try_case(case, terms, lambda name, digest: proof_files.commit(place, name, digest))
     except Exception as error:
         reason = f"{type(error).__name__}: {' '.join(str(error).split())}"
         return {"case": {"number": case.number}, "status": "crashed", "reason": reason, "score": None}
@@ -68,16 +68,18 @@ def run_proof(request: Request, out: Path, progress: Progress | None = None) -> 
     cases = plan(
         request.cases, request.seed, request.rigs, request.staged, request.kinds, request.details, request.mechanisms
     )
-    found = {case.name: record for case in cases if (record := proof_files.kept(place, case, program)) is not None}
+    found = {
+        case.name: record for case in cases if (record := proof_files.recall_record(place, case, program)) is not None
+    }
     missing = [case for case in cases if case.name not in found]
     progress = progress or Logged()
     reused = len(found)
-    for name, record in _tried(missing, request, place, program):
+    for name, record in _try_cases(missing, request, place, program):
         if not found:
             progress.stage("prove")
         found[name] = record
         progress.step(len(found), len(cases), record["reason"] or "")
-    return _finished(request, place, [found[case.name] for case in cases], reused)
+    return _finish(request, place, [found[case.name] for case in cases], reused)
 
 
 def _check(request: Request) -> None:
@@ -106,10 +108,12 @@ def _hidden(request: Request) -> list[str]:
     return list(dict.fromkeys(EFFECTS[name].mechanism for name in able))
 
 
-def _tried(
+def _try_cases(
     missing: Sequence[Case], request: Request, place: Path, program: str
 ) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Names and records as they come, from one process per core or from a cluster that runs already."""
+    """Try the missing cases; names and records as they come, from one process per core or from a cluster that runs
+    already.
+    """
     if not missing:
         return
     from foundation.cache import cache_folder
@@ -125,8 +129,8 @@ def _tried(
                 yield name, {"score": None, **record}
 
 
-def _finished(request: Request, place: Path, records: Sequence[Mapping[str, Any]], reused: int) -> dict[str, Any]:
-    """Count, draw and write."""
+def _finish(request: Request, place: Path, records: Sequence[Mapping[str, Any]], reused: int) -> dict[str, Any]:
+    """Count, draw and write; returns the summary."""
     from softdot.hardware import hardware
     from softdot.studies.proof.detection_curves import draw
     from softdot.studies.proof.proof_page import text
@@ -158,7 +162,7 @@ def score_from(saved: Mapping[str, Any]) -> Score:
 
 
 def program_hash() -> str:
-    """Of everything that a verdict, a case or a score depends on."""
+    """Hash of everything that a verdict, a case or a score depends on."""
     program = [source_hash(module) for module in (__name__, "softdot.commands.diagnose")]
     recordings = os.environ.get("SOFTDOT_RECORDINGS", "")
     return data_hash([*program, recordings])

@@ -64,13 +64,15 @@ class Score:
         return bool(self.named or self.main_part) and not self.right
 
     def plain(self) -> dict[str, Any]:
-        """As JSON has it."""
+        """The score as JSON has it."""
         return {**asdict(self), "truth": list(map(list, self.truth)), "named": list(map(list, self.named)),
                 "main_part": list(map(list, self.main_part))}  # fmt: skip
 
 
-def scored(truth: Mapping[str, Any], verdict: Mapping[str, Any], separation: Separation, seconds: float = 0.0) -> Score:
-    """Compare verdict.json with the revealed truth."""
+def score_verdict(
+    truth: Mapping[str, Any], verdict: Mapping[str, Any], separation: Separation, seconds: float = 0.0
+) -> Score:
+    """Score verdict.json against the revealed truth."""
     true = _names(truth["mechanisms"])
     named = () if verdict["unexplained"] else _names(verdict["missing_physics"])
     main = _names(verdict.get("main_part") or [])
@@ -97,7 +99,7 @@ def scored(truth: Mapping[str, Any], verdict: Mapping[str, Any], separation: Sep
         _overlap(truth["per_run"], verdict.get("where") or []),
         held_out["nrmse_after"] / floor if named and floor and held_out.get("nrmse_after") is not None else None,
         held_out.get("log_score_gain_per_press"),
-        _covered(truth["mechanisms"], verdict["missing_physics"]) if exact else {},
+        _coverage(truth["mechanisms"], verdict["missing_physics"]) if exact else {},
         (verdict.get("next_experiment") or {}).get("expected_separation_sigma"),
         seconds=seconds,
         main_part=main,
@@ -150,8 +152,8 @@ def _overlap(true: Mapping[str, float], where: Sequence[Mapping[str, Any]]) -> f
     return sum(min(share, told.get(key, 0.0) / total) for key, share in true.items())
 
 
-def _covered(true: Sequence[Mapping[str, Any]], named: Sequence[Mapping[str, Any]]) -> dict[str, bool]:
-    """Values whose truth is known in the same terms."""
+def _coverage(true: Sequence[Mapping[str, Any]], named: Sequence[Mapping[str, Any]]) -> dict[str, bool]:
+    """Whether the interval of each named value covers the true one, where that is known in the same terms."""
     found = {}
     for one in true:
         parameters: Mapping[str, Any] = next((n["parameters"] for n in named if n["mechanism"] == one["mechanism"]), {})

@@ -30,7 +30,7 @@ def solved(name="I", voltages=(40.0, 20.0, 10.0), response=1.0, exponent=1.0):
         responses,
         finer,
         curves[SIMULATED],
-        curves[SIMULATED].scaled(0.5, 0.5),
+        curves[SIMULATED].scale(0.5, 0.5),
         dict.fromkeys(models, 5000),
         {},
     )

@@ -28,8 +28,8 @@ from softdot.studies.paper.analytical.softness import (
     softness,
     softness_of_jiang,
 )
-from softdot.studies.paper.analytical.tables import misprinted, recomputed
-from softdot.studies.paper.published import published, table_rows
+from softdot.studies.paper.analytical.tables import formula_values, is_misprint
+from softdot.studies.paper.published import published_numbers, table_rows
 from tests.cases import for_each
 
 L = 2.5e-3
@@ -41,8 +41,8 @@ def test_every_cell_of_tables_3_and_4_follows_from_the_formulas_but_the_bending_
         f"{table}.{case}.{column}"
         for table in ("table3", "table4")
         for case in table_rows(table)
-        for column, ours in recomputed(table)[case].items()
-        if misprinted(published()[f"{table}.{case}.{column}"], ours)
+        for column, ours in formula_values(table)[case].items()
+        if is_misprint(published_numbers()[f"{table}.{case}.{column}"], ours)
     ]
     assert slips == ["table4.C1.S1b", "table4.C2.S1b", "table4.C5.S1b", "table4.C6.S1b"]
 

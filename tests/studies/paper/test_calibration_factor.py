@@ -7,14 +7,14 @@ from softdot.studies.paper.calibration import contours
 from softdot.studies.paper.calibration.answers import answers
 from softdot.studies.paper.calibration.claims import claims, lost_more
 from softdot.studies.paper.calibration.factor import BEAM, DIMENSION, FILTER, LEAKAGE, SPONGE, factor, factors
-from softdot.studies.paper.calibration.inputs import INPUTS, assumed
+from softdot.studies.paper.calibration.inputs import INPUTS, assumed_inputs
 from softdot.studies.paper.calibration.ranges import quantiles, ranges
-from softdot.studies.paper.published import published
+from softdot.studies.paper.published import published_numbers
 from tests.studies.paper.stand_in_rig import rig, solved
 
 FEW = 6
 """2^6 samples are enough here."""
-OPEN_CIRCUIT = assumed(resistance_MOhm=1e7, capacitance_pF=0.0)
+OPEN_CIRCUIT = assumed_inputs(resistance_MOhm=1e7, capacitance_pF=0.0)
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +35,7 @@ def test_the_pieces_are_what_each_step_takes_away_and_p_is_their_product():
 
 def test_leakage_goes_with_press_time_over_resistance():
     slow, fast, tenfold = (
-        factor(solved(), assumed(press_time_s=t, resistance_MOhm=r)).pieces[LEAKAGE]
+        factor(solved(), assumed_inputs(press_time_s=t, resistance_MOhm=r)).pieces[LEAKAGE]
         for t, r in ((0.4, 1.0), (0.2, 1.0), (0.4, 0.1))
     )
     assert slow == pytest.approx(2.0 * fast, rel=0.01)
@@ -44,13 +44,13 @@ def test_leakage_goes_with_press_time_over_resistance():
 
 def test_maximum_minus_minimum_spans_press_and_release():
     """Peak R pi Q / 2 T in each direction, against Q / C at open circuit."""
-    found = factor(solved(), assumed(press_time_s=0.4, resistance_MOhm=0.1))
+    found = factor(solved(), assumed_inputs(press_time_s=0.4, resistance_MOhm=0.1))
     assert found.pieces[LEAKAGE] == pytest.approx(0.4 / (np.pi * 0.1e6 * 1000e-12), rel=0.01)
 
 
 def test_the_search_gives_exactly_the_wanted_p():
     resistance = contours.resistance_for(solved(), 300.0, 0.3)
-    found = factor(solved(), assumed(resistance_MOhm=resistance, press_time_s=0.3))
+    found = factor(solved(), assumed_inputs(resistance_MOhm=resistance, press_time_s=0.3))
     assert found.p == pytest.approx(300.0, rel=1e-3)
     time = contours.time_for(solved(), 300.0, resistance)
     assert time == pytest.approx(0.3, rel=1e-3)
@@ -59,7 +59,7 @@ def test_the_search_gives_exactly_the_wanted_p():
 
 
 def test_the_range_covers_the_assumed_p_and_resistance_drives_it(spread):
-    for case, found in factors(rig(), assumed()).items():
+    for case, found in factors(rig(), assumed_inputs()).items():
         p = spread.p(case)
         assert p.min() < found.p < p.max()
         drivers = spread.drivers(case)
@@ -86,10 +86,10 @@ def test_a_smaller_film_loses_more_by_the_ratio_of_areas():
 
 
 def test_every_number_of_section_two_has_an_answer_and_p_is_a_prediction():
-    found = answers(factors(rig(), assumed()))
-    keys = {k for k in published() if k.startswith(("table1.", "section2.p", "section2.h2", "section2.E2"))}
+    found = answers(factors(rig(), assumed_inputs()))
+    keys = {k for k in published_numbers() if k.startswith(("table1.", "section2.p", "section2.h2", "section2.E2"))}
     assert set(found) == keys
-    assert found["table1.I.p"].ours != published()["table1.I.p"].value
+    assert found["table1.I.p"].ours != published_numbers()["table1.I.p"].value
 
 
 def test_the_claims_follow_the_numbers(spread):

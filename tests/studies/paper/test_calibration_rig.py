@@ -5,7 +5,7 @@ import pytest
 from softdot.outcome import outcome
 from softdot.studies.paper.calibration.rig import CASES, constant_sponge, foam, rig_config
 from softdot.studies.paper.calibration.section import section_of
-from softdot.studies.paper.published import published
+from softdot.studies.paper.published import published_numbers
 from tests.cases import for_each
 from tests.studies.paper.stand_in_rig import rig
 
@@ -13,7 +13,7 @@ from tests.studies.paper.stand_in_rig import rig
 @for_each("name", ["I", "II"])
 def test_the_rig_is_that_of_table_1(name):
     config = rig_config(CASES[name], "solid", constant_sponge(0.3), 0.8)
-    numbers = published()
+    numbers = published_numbers()
     assert config.segment.medium1.thickness_mm == numbers[f"table1.{name}.h1_mm"].value
     assert config.materials["medium1"].youngs_modulus_MPa == numbers[f"table1.{name}.E1_MPa"].value
     assert config.press.indentation_mm == numbers[f"table1.{name}.u2_mm"].value

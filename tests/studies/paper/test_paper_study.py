@@ -10,7 +10,7 @@ from softdot.cli import main
 from softdot.commands import paper as whole
 from softdot.studies.paper.analytical.section import section as analytical
 from softdot.studies.paper.presses import NotSolvedError
-from softdot.studies.paper.published import published
+from softdot.studies.paper.published import published_numbers
 from softdot.studies.paper.segments.section import section_of
 from tests.studies.paper.stand_in_study import study
 
@@ -67,7 +67,7 @@ def test_every_published_number_is_in_the_json_with_ours_and_the_ratio(made):
     summary = json.loads((made / "paper.json").read_text("utf-8"))
     assert summary["format"] == "softdot-paper/1"
     entries = {entry["key"]: entry for entry in summary["published"]}
-    assert list(entries) == list(published())
+    assert list(entries) == list(published_numbers())
     slip = entries["table4.C1.S1b"]
     assert (slip["paper"], slip["misprint"] is not None) == (5.2, True)
     assert slip["ours"] == pytest.approx(6.1035, rel=1e-4)

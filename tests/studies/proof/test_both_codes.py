@@ -10,7 +10,7 @@ from diagnose.forward import Setting
 from softdot.config.rig import load_rig
 from softdot.diagnosis.engine import engine_for
 from softdot.studies.proof.recording_folder import files
-from softdot.studies.proof.world.effects import applied
+from softdot.studies.proof.world.effects import apply_effects
 from softdot.studies.proof.world.reality import baseline, record
 from softdot.studies.proof.world.rigs import BENCHES
 from softdot.studies.proof.world.stack import Stack
@@ -67,7 +67,7 @@ def test_a_medium_of_twice_the_modulus_changes_force_and_charge_alike(tmp_path):
     assert stiffer.parameters(twice.values)["modulus_factor"] == pytest.approx(2.0)
     mine = told.first_presses.table_change((0.0, 0.0), [twice])[:, [0, 2]]
     depths = np.array(SHARES_OF_CHANGES) * told.first_presses.depth_mm
-    twice_as_stiff = applied(baseline(bench), bench, {"modulus-medium2": 20.0}).made
+    twice_as_stiff = apply_effects(baseline(bench), bench, {"modulus-medium2": 20.0}).made
     before, after = hidden(bench.made, depths), hidden(twice_as_stiff, depths)
     true = np.column_stack([np.log(after[:, 0] / before[:, 0]), (after[:, 1] - before[:, 1]) / before[:, 0]])
     assert np.all(np.abs(mine / true - 1.0) < 0.04)  # the diagnosis mesh itself would be 5 % off at the first depth
@@ -84,7 +84,7 @@ def test_a_base_that_has_come_apart_from_its_rims_changes_force_and_charge_alike
     told.refine([setting], silent)
     mine = told.first_presses.table_change((0.0, 0.0), [setting])[:, [0, 2]]
     depths = np.array(SHARES_OF_CHANGES) * told.first_presses.depth_mm
-    half_loose = applied(baseline(bench), bench, {"loose-base": 10.0}).made
+    half_loose = apply_effects(baseline(bench), bench, {"loose-base": 10.0}).made
     before, after = hidden(bench.made, depths), hidden(half_loose, depths)
     true = np.column_stack([np.log(after[:, 0] / before[:, 0]), (after[:, 1] - before[:, 1]) / before[:, 0]])
     assert np.all(np.abs(mine - true) < 0.05 * np.abs(true).max(axis=0))

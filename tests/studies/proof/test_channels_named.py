@@ -17,7 +17,7 @@ from softdot.config.model import model_of
 from softdot.config.rig import load_rig
 from softdot.studies.proof.recording_folder import files
 from softdot.studies.proof.world import cases, reality, rigs
-from softdot.studies.proof.world.effects import applied
+from softdot.studies.proof.world.effects import apply_effects
 from softdot.studies.proof.world.march import Course, Table
 from solve.mechanisms import with_mechanisms
 
@@ -68,7 +68,7 @@ def told(effect, strength, folder, among=()):
     """What is named in a recording with an effect, among all that stands behind the film or some of it."""
     rng = np.random.default_rng(3)
     believed = replace(reality.baseline(BENCH), nuisance={("gain", 0, 1): 0.02, ("lag_s", 1, 2): 0.001})
-    hidden = applied(believed, BENCH, {effect: strength} if effect else {})
+    hidden = apply_effects(believed, BENCH, {effect: strength} if effect else {})
     runs = [cases._noisy(run, BENCH, rng) for run in reality.record(hidden, BENCH)]
     for name, text in files(BENCH, runs).items():
         (folder / name).write_text(text, "utf-8")

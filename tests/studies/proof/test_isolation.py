@@ -11,7 +11,7 @@ import pytest
 
 from foundation.thread_pools import ONE_THREAD_VARIABLES
 from softdot.studies.proof import isolation
-from softdot.studies.proof.commitment import digest_of, seal, verified
+from softdot.studies.proof.commitment import digest_of, matches_digest, seal
 from softdot.studies.proof.guard import PACKAGES, allowed_roots
 from tests.cases import for_each
 
@@ -102,7 +102,7 @@ def test_the_process_gets_a_folder_with_the_recording_alone(monkeypatch, tmp_pat
         return subprocess.CompletedProcess(command, 2, "", "softdot: no")
 
     monkeypatch.setattr(isolation.subprocess, "run", watched)
-    heard = isolation.diagnosed({"rig.toml": "", "press-01.csv": ""}, tmp_path, 10.0)
+    heard = isolation.diagnose_isolated({"rig.toml": "", "press-01.csv": ""}, tmp_path, 10.0)
     assert seen["files"] == ["recording", "recording/press-01.csv", "recording/rig.toml", "tmp"]
     assert "case" not in seen["words"]
     assert heard.verdict is None
@@ -125,7 +125,7 @@ def test_the_truth_is_not_on_disk_while_a_case_is_diagnosed(monkeypatch, tmp_pat
         5.0,
         600.0,
     )
-    monkeypatch.setattr(trial, "concealed", lambda _case: (truth, []))
+    monkeypatch.setattr(trial, "conceal", lambda _case: (truth, []))
     monkeypatch.setattr(trial, "files", lambda _bench, _runs: {})
     monkeypatch.setattr(trial.rivals, "opinions", lambda _bench, _runs: {})
     written = {}
@@ -134,7 +134,7 @@ def test_the_truth_is_not_on_disk_while_a_case_is_diagnosed(monkeypatch, tmp_pat
         written.update({p: p.read_text(encoding="utf-8") for p in tmp_path.rglob("*") if p.is_file()})
         return isolation.Heard(None, "stopped", 0.0)
 
-    monkeypatch.setattr(trial, "diagnosed", diagnosed)
+    monkeypatch.setattr(trial, "diagnose_isolated", diagnosed)
     record = work.prove_case(truth.case, trial.Terms(tmp_path / "cache"), place, "program")
     assert "0.123456789" not in "".join(written.values())
     assert record["digest"] in (place / "commitments" / "case-0001.json").read_text(encoding="utf-8")
@@ -144,9 +144,9 @@ def test_the_truth_is_not_on_disk_while_a_case_is_diagnosed(monkeypatch, tmp_pat
 
 def test_a_changed_truth_is_noticed():
     sealed = seal({"mechanisms": ["charge-leakage"], "size": 5.0})
-    assert verified(sealed.truth, sealed.salt, sealed.digest)
-    assert not verified({**sealed.truth, "size": 5.1}, sealed.salt, sealed.digest)
-    assert not verified(sealed.truth, sealed.salt[::-1], sealed.digest)
+    assert matches_digest(sealed.truth, sealed.salt, sealed.digest)
+    assert not matches_digest({**sealed.truth, "size": 5.1}, sealed.salt, sealed.digest)
+    assert not matches_digest(sealed.truth, sealed.salt[::-1], sealed.digest)
 
 
 def test_a_commitment_survives_json_and_hides_a_truth_that_could_be_guessed():
@@ -168,10 +168,10 @@ def test_a_record_whose_truth_was_changed_is_not_kept(tmp_path):
     store.commit(place, case.name, sealed.digest)
     record = {"case": asdict(case), "program": "p", "status": "scored", "truth": sealed.truth, "salt": sealed.salt}
     store.keep(place, case.name, record)
-    assert store.kept(place, case, "p") is not None
-    assert store.kept(place, case, "another program") is None
+    assert store.recall_record(place, case, "p") is not None
+    assert store.recall_record(place, case, "another program") is None
     store.keep(place, case.name, {**record, "truth": {"kind": "single"}})
-    assert store.kept(place, case, "p") is None
+    assert store.recall_record(place, case, "p") is None
 
 
 def test_a_record_with_a_changed_digit_is_told_of_and_not_used(tmp_path, caplog):
@@ -187,10 +187,10 @@ def test_a_record_with_a_changed_digit_is_told_of_and_not_used(tmp_path, caplog)
     record = {"case": asdict(case), "program": "p", "status": "scored", "truth": sealed.truth, "salt": sealed.salt,
               "held_out": 1.25}  # fmt: skip
     store.keep(place, case.name, record)
-    assert store.kept(place, case, "p") == json.loads(json.dumps(record)) == next(store.records(place))
+    assert store.recall_record(place, case, "p") == json.loads(json.dumps(record)) == next(store.records(place))
     path = place / "cases" / "case-0001.json"
     path.write_text(path.read_text(encoding="utf-8").replace("1.25", "7.25"), "utf-8")
-    assert store.kept(place, case, "p") is None
+    assert store.recall_record(place, case, "p") is None
     assert list(store.records(place)) == []
     assert "damaged" in caplog.text
 

@@ -41,7 +41,7 @@ def tried(monkeypatch):
             store.keep(place, case.name, record)
             yield case.name, record
 
-    monkeypatch.setattr(run, "_tried", fake)
+    monkeypatch.setattr(run, "_try_cases", fake)
     return numbers
 
 
@@ -130,6 +130,6 @@ def test_no_verdict_at_all_exits_3(monkeypatch, tmp_path, capsys):
         store.begin(place)
         yield from ((case.name, {"status": "crashed", "reason": "no", "score": None}) for case in missing)
 
-    monkeypatch.setattr(run, "_tried", fail)
+    monkeypatch.setattr(run, "_try_cases", fail)
     assert main(["prove", "--cases", "2", "--rigs", RIDGES, "-o", str(tmp_path / "proof")]) == 3
     assert "not one of 2 cases has a verdict" in capsys.readouterr().err

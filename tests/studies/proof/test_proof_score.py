@@ -4,7 +4,7 @@ import pytest
 
 from diagnose.statistics.proportions import wilson_interval
 from softdot.studies.proof.rates import rate, tally
-from softdot.studies.proof.score import scored
+from softdot.studies.proof.score import score_verdict
 from softdot.studies.proof.world.cases import KINDS, NONE, OUTSIDE, PAIR, SINGLE, plan
 from softdot.studies.proof.world.effects import fits
 from softdot.studies.proof.world.rigs import BENCHES
@@ -43,49 +43,51 @@ def far(_):
 
 
 def test_the_right_name_is_exact():
-    score = scored(truth(LEAK), verdict(LEAK), far)
+    score = score_verdict(truth(LEAK), verdict(LEAK), far)
     assert (score.exact, score.grouped, score.component) == (True, True, True)
     assert score.held_out == pytest.approx(1.1)
 
 
 def test_a_leak_across_the_film_is_one_across_the_input():
-    assert scored(truth(LEAK), verdict({**LEAK, "component": "film"}), far).exact
+    assert score_verdict(truth(LEAK), verdict({**LEAK, "component": "film"}), far).exact
 
 
 def test_another_name_is_wrong_unless_a_fair_group_says_so():
     groups = [[LEAK, CABLE]]
-    assert not scored(truth(LEAK), verdict(CABLE), near).grouped
-    fair = scored(truth(LEAK), verdict(CABLE, groups=groups), near)
+    assert not score_verdict(truth(LEAK), verdict(CABLE), near).grouped
+    fair = score_verdict(truth(LEAK), verdict(CABLE, groups=groups), near)
     assert (fair.exact, fair.grouped, fair.group) == (False, True, 2)
-    assert not scored(truth(LEAK), verdict(CABLE, groups=groups), far).grouped  # the generator can tell them apart
-    assert not scored(truth(LEAK), verdict(CABLE, groups=groups), lambda _: None).grouped
+    assert not score_verdict(
+        truth(LEAK), verdict(CABLE, groups=groups), far
+    ).grouped  # the generator can tell them apart
+    assert not score_verdict(truth(LEAK), verdict(CABLE, groups=groups), lambda _: None).grouped
 
 
 def test_a_group_of_four_is_no_answer():
     members = [LEAK, CABLE, RELAX, {**RELAX, "component": "medium1"}]
-    assert not scored(truth(LEAK), verdict(CABLE, groups=[members]), near).grouped
+    assert not score_verdict(truth(LEAK), verdict(CABLE, groups=[members]), near).grouped
 
 
 def test_the_right_physics_in_the_wrong_part_is_not_exact():
-    score = scored(truth(RELAX), verdict({**RELAX, "component": "medium1"}), far)
+    score = score_verdict(truth(RELAX), verdict({**RELAX, "component": "medium1"}), far)
     assert (score.mechanism, score.component, score.exact) == (True, False, False)
 
 
 def test_both_of_a_pair_are_needed():
-    assert not scored(truth(LEAK, RELAX), verdict(LEAK), far).exact
-    assert scored(truth(LEAK, RELAX), verdict(RELAX, LEAK), far).exact
+    assert not score_verdict(truth(LEAK, RELAX), verdict(LEAK), far).exact
+    assert score_verdict(truth(LEAK, RELAX), verdict(RELAX, LEAK), far).exact
 
 
 def test_a_pair_in_a_group_is_written_with_a_plus():
     both = {"mechanism": "charge-leakage + viscoelasticity", "component": "readout + medium2"}
-    assert scored(truth(LEAK, RELAX), verdict(CABLE, groups=[[CABLE, both]]), near).grouped
+    assert score_verdict(truth(LEAK, RELAX), verdict(CABLE, groups=[[CABLE, both]]), near).grouped
 
 
 def test_a_name_without_effect_is_false_and_abstention_is_not():
-    assert scored(truth(kind=NONE, size=0.0), verdict(LEAK), far).named
-    assert not scored(truth(kind=NONE, size=0.0), verdict(), far).named
+    assert score_verdict(truth(kind=NONE, size=0.0), verdict(LEAK), far).named
+    assert not score_verdict(truth(kind=NONE, size=0.0), verdict(), far).named
     foreign = truth({"mechanism": "", "component": "film"}, kind="outside")
-    assert not scored(foreign, verdict(unexplained=True), far).named
+    assert not score_verdict(foreign, verdict(unexplained=True), far).named
 
 
 def test_the_common_part_of_two_distributions_is_the_overlap():
@@ -93,22 +95,24 @@ def test_the_common_part_of_two_distributions_is_the_overlap():
         {"run": "a", "channel": "voltage_V", "share_of_excess": 0.25},
         {"run": "c", "channel": "force_N", "share_of_excess": 0.25},
     ]
-    assert scored(truth(LEAK), verdict(LEAK, where=where), far).overlap == pytest.approx(0.5)
+    assert score_verdict(truth(LEAK), verdict(LEAK, where=where), far).overlap == pytest.approx(0.5)
 
 
 def test_an_interval_covers_or_not():
     known = {"resistance_MOhm": 1.9}
-    assert scored(truth(LEAK, values=known), verdict(LEAK), far).covered == {"charge-leakage.resistance_MOhm": True}
-    assert not any(scored(truth(LEAK, values=known), verdict(LEAK, high=1.8), far).covered.values())
+    assert score_verdict(truth(LEAK, values=known), verdict(LEAK), far).covered == {
+        "charge-leakage.resistance_MOhm": True
+    }
+    assert not any(score_verdict(truth(LEAK, values=known), verdict(LEAK, high=1.8), far).covered.values())
 
 
 def test_a_main_part_is_right_by_its_name_and_no_name_of_everything():
     main = {**verdict(unexplained=True), "main_part": [LEAK]}
-    score = scored(truth(LEAK), main, far)
+    score = score_verdict(truth(LEAK), main, far)
     assert (score.named, score.main_part, score.right, score.exact) == ((), score.truth, True, False)
-    assert not scored(truth(CABLE), main, far).right
-    assert scored(truth(CABLE), {**main, "ambiguous_with": [[LEAK, CABLE]]}, near).right
-    rates = tally([score, scored(truth(kind=NONE, size=0.0), main, far)])
+    assert not score_verdict(truth(CABLE), main, far).right
+    assert score_verdict(truth(CABLE), {**main, "ambiguous_with": [[LEAK, CABLE]]}, near).right
+    rates = tally([score, score_verdict(truth(kind=NONE, size=0.0), main, far)])
     assert [rates[name]["count"] for name in ("clear_right", "clear_exact", "clear_wrong")] == [1, 0, 0]
     assert (rates["main_parts_without_effect"]["count"], rates["names_right"]["count"]) == (1, 1)
 
@@ -116,10 +120,10 @@ def test_a_main_part_is_right_by_its_name_and_no_name_of_everything():
 def test_on_a_rig_with_flaws_effects_are_counted_by_what_the_flaws_make():
     flawed = {"flaws_rms": 2.0}
     scores = [
-        scored({**truth(LEAK, size=4.0), **flawed}, verdict(LEAK), far),
-        scored({**truth(LEAK, size=6.0), **flawed}, verdict(CABLE), far),
-        scored({**truth(LEAK, size=3.9), **flawed}, verdict(unexplained=True), far),
-        scored(truth(LEAK, size=6.0), verdict(LEAK), far),  # a rig without flaws
+        score_verdict({**truth(LEAK, size=4.0), **flawed}, verdict(LEAK), far),
+        score_verdict({**truth(LEAK, size=6.0), **flawed}, verdict(CABLE), far),
+        score_verdict({**truth(LEAK, size=3.9), **flawed}, verdict(unexplained=True), far),
+        score_verdict(truth(LEAK, size=6.0), verdict(LEAK), far),  # a rig without flaws
     ]
     rates = tally(scores)
     counts = {name: (rates[name]["count"], rates[name]["of"]) for name in rates if "flaws" in name}
@@ -131,10 +135,10 @@ def test_on_a_rig_with_flaws_effects_are_counted_by_what_the_flaws_make():
 
 def test_a_tally_counts():
     scores = [
-        scored(truth(LEAK), verdict(LEAK), far),
-        scored(truth(LEAK), verdict(CABLE), far),
-        scored(truth(LEAK, size=1.0), verdict(unexplained=True), far),
-        scored(truth(kind=NONE, size=0.0), verdict(), far),
+        score_verdict(truth(LEAK), verdict(LEAK), far),
+        score_verdict(truth(LEAK), verdict(CABLE), far),
+        score_verdict(truth(LEAK, size=1.0), verdict(unexplained=True), far),
+        score_verdict(truth(kind=NONE, size=0.0), verdict(), far),
     ]
     rates = tally(scores)
     assert (rates["clear_exact"]["count"], rates["clear_exact"]["of"]) == (1, 2)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from softdot.studies.proof import rivals
-from softdot.studies.proof.localised import _taken_in
+from softdot.studies.proof.localised import _select_forward
 from softdot.studies.proof.world import reality
 from softdot.studies.proof.world.cases import _noisy
 from softdot.studies.proof.world.march import Course, Table
@@ -19,9 +19,9 @@ def linear_press(monkeypatch):
     depth = np.linspace(0.0, 0.3, 5)
     known = Table(depth, Course(30.0 * depth, 4e4 * depth[:, None], depth))
     monkeypatch.setattr(reality, "table", lambda _made, _depth: known)
-    rivals._believed.cache_clear()
+    rivals._believed_runs.cache_clear()
     yield
-    rivals._believed.cache_clear()
+    rivals._believed_runs.cache_clear()
 
 
 def recorded(**changes):
@@ -61,7 +61,7 @@ def test_forward_selection_takes_the_true_column_and_its_squares():
     """Of orthonormal columns each takes the square of its own weight; noise of one takes none in."""
     random = np.random.default_rng(4)
     columns = np.linalg.qr(random.standard_normal((400, 6)))[0]
-    found = _taken_in(columns, 30.0 * columns[:, 2] - 20.0 * columns[:, 5] + random.standard_normal(400))
+    found = _select_forward(columns, 30.0 * columns[:, 2] - 20.0 * columns[:, 5] + random.standard_normal(400))
     assert list(found) == [2, 5]
     assert found[2] == pytest.approx(900.0, rel=0.2)
 
@@ -70,7 +70,7 @@ def test_forward_selection_takes_the_true_column_and_its_squares():
 def test_a_cubic_force_is_what_sparse_regression_fits():
     runs = recorded()
     stiff = [{**run, "force_N": run["force_N"] + 200.0 * run["displacement_mm"].clip(0.0) ** 3} for run in runs]
-    said = rivals._sparse(CLAMPED, stiff, rivals._believed(CLAMPED.name))
+    said = rivals._sparse(CLAMPED, stiff, rivals._believed_runs(CLAMPED.name))
     assert said.detected
     assert said.named is not None
     assert said.after == pytest.approx(1.0, abs=0.05)

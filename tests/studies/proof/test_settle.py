@@ -9,7 +9,7 @@ from softdot.studies.proof import trial
 from softdot.studies.proof.asked_presses import asked_run, with_asked
 from softdot.studies.proof.isolation import Heard
 from softdot.studies.proof.recording_folder import rig_text
-from softdot.studies.proof.score import scored
+from softdot.studies.proof.score import score_verdict
 from softdot.studies.proof.trial import Terms
 from softdot.studies.proof.world.cases import AMBIGUOUS, Case
 from softdot.studies.proof.world.reality import baseline, record
@@ -95,5 +95,5 @@ def test_only_the_truth_alone_is_a_resolved_group(named, groups, resolved, left,
         "missing_physics": [{**one, "parameters": {}} for one in named],
     }  # fmt: skip
     monkeypatch.setattr(trial, "diagnosed", lambda *_: Heard(verdict, "", 1.0))
-    monkeypatch.setattr(trial, "_scored", lambda _, t, v, s: scored(t, v, lambda _: 0.5, s))
-    assert trial._settled(CASE, Terms("."), truth, {})[1:] == (resolved, left)
+    monkeypatch.setattr(trial, "_score", lambda _, t, v, s: score_verdict(t, v, lambda _: 0.5, s))
+    assert trial._settle(CASE, Terms("."), truth, {})[1:] == (resolved, left)

@@ -8,7 +8,7 @@ import pytest
 from softdot.studies.proof.world.amplifier import Amplifier
 from softdot.studies.proof.world.cases import SINGLE, plan
 from softdot.studies.proof.world.channels import Stray, Wiring, voltages
-from softdot.studies.proof.world.effects import EFFECTS, applied, fits
+from softdot.studies.proof.world.effects import EFFECTS, apply_effects, fits
 from softdot.studies.proof.world.made import Film, Layer, Made
 from softdot.studies.proof.world.march import table
 from softdot.studies.proof.world.reality import baseline, keys
@@ -84,7 +84,7 @@ def test_only_a_rig_with_channels_can_have_crosstalk():
     assert fits("crosstalk-1-3", ROW)
     assert not fits("crosstalk-1-3", CLAMPED)
     belief = baseline(ROW)
-    (stray,) = applied(belief, ROW, {"crosstalk-1-3": 2.0}).wiring.strays
+    (stray,) = apply_effects(belief, ROW, {"crosstalk-1-3": 2.0}).wiring.strays
     assert stray.between == (0, 2)
     assert EFFECTS["crosstalk-1-3"].truth(ROW, 2.0)["capacitance_pF"] == pytest.approx(stray.capacitance_pF)
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from softdot.studies.proof.world import laws
-from softdot.studies.proof.world.effects import applied
+from softdot.studies.proof.world.effects import apply_effects
 from softdot.studies.proof.world.laws import elastic_strain, shear_modulus
 from softdot.studies.proof.world.made import Damage, Film, Layer, Made, Spectrum
 from softdot.studies.proof.world.march import table, through_time
 from softdot.studies.proof.world.memory_laws import at_rest, branches, relaxation, respond
-from softdot.studies.proof.world.plastic import Flow, flowed
+from softdot.studies.proof.world.plastic import Flow, flow_step
 from softdot.studies.proof.world.reality import baseline
 from softdot.studies.proof.world.remembering_presses import AskedPath, scaled_memory, with_strength
 from softdot.studies.proof.world.rigs import FREE
@@ -179,7 +179,7 @@ def test_both_codes_press_the_same_slice_alike():
 def test_glue_of_no_strength_is_none_and_soft_glue_leaves_the_film_as_it_is(name):
     """A hidden glue once thinned the film, and stiffened it where it was weak: the truth then had another name."""
     coarse = replace(FREE, made=replace(FREE.made, fine=0.5))
-    plain, weak, soft = (applied(baseline(coarse), coarse, {name: s}).made for s in (0.0, 1e-9, 50.0))
+    plain, weak, soft = (apply_effects(baseline(coarse), coarse, {name: s}).made for s in (0.0, 1e-9, 50.0))
     depth_mm = 0.5 * FREE.deepest_mm
     before, after, much = (pressed(made, depth_mm, 2) for made in (plain, weak, soft))
     assert after.force_N == pytest.approx(before.force_N, rel=3e-3)  # the grid has one more row of elements
@@ -192,7 +192,7 @@ def test_glue_of_no_strength_is_none_and_soft_glue_leaves_the_film_as_it_is(name
 def test_a_film_that_yields_stays_on_its_yield_surface_and_keeps_its_plastic_strain():
     film, rate = Film(poisson_ratio=0.5 - 1e-9, yield_MPa=40.0, hardening_MPa=60.0), np.diag([1.0, -0.5, -0.5])
     f = (np.eye(3) + 0.05 * rate)[None]
-    _, _, flow = flowed(film, f, Flow.none(1))
+    _, _, flow = flow_step(film, f, Flow.none(1))
     strain = elastic_strain(film, f, flow.strain)
     deviator = 2.0 * shear_modulus(film) * (strain - np.trace(strain[0]) / 3.0 * np.eye(3))[0]
     size = np.sqrt(1.5 * (deviator**2).sum())
@@ -200,17 +200,17 @@ def test_a_film_that_yields_stays_on_its_yield_surface_and_keeps_its_plastic_str
     # in simple tension the stress of von Mises is E E_T / (E + E_T) beyond the yield strain
     along = 2.0 / 3.0 * (0.5 * ((1.05**2 - 1.0) - (0.975**2 - 1.0)))
     assert flow.total[0] == pytest.approx((2000.0 * along - 40.0) / 2060.0, rel=1e-6)
-    back = flowed(film, np.eye(3)[None] + 0.03 * rate, flow)[2]
+    back = flow_step(film, np.eye(3)[None] + 0.03 * rate, flow)[2]
     np.testing.assert_array_equal(back.strain, flow.strain)  # a small way back is elastic
 
 
 def test_the_tangent_of_a_film_that_yields_is_the_derivative_of_its_stress():
     film, rng, h = Film(yield_MPa=30.0, hardening_MPa=40.0), np.random.default_rng(0), 1e-7
     first, way = np.eye(3) + 0.02 * rng.standard_normal((5, 3, 3)), rng.standard_normal((5, 3, 3))
-    _, _, flow = flowed(film, first, Flow.none(5))
+    _, _, flow = flow_step(film, first, Flow.none(5))
     f = first + 0.02 * rng.standard_normal((5, 3, 3))
-    change = (flowed(film, f + h * way, flow)[0] - flowed(film, f - h * way, flow)[0]) / (2.0 * h)
-    expected = np.einsum("nijkl,nkl->nij", flowed(film, f, flow)[1], way)
+    change = (flow_step(film, f + h * way, flow)[0] - flow_step(film, f - h * way, flow)[0]) / (2.0 * h)
+    expected = np.einsum("nijkl,nkl->nij", flow_step(film, f, flow)[1], way)
     np.testing.assert_allclose(change, expected, atol=1e-6 * np.abs(expected).max())
 
 

@@ -7,13 +7,13 @@ import pytest
 
 from softdot.studies.proof.world.amplifier import Amplifier, Filter
 from softdot.studies.proof.world.details import PLAY, SOFTNESS_MM, Details
-from softdot.studies.proof.world.effects import EFFECTS, applied, fits
+from softdot.studies.proof.world.effects import EFFECTS, apply_effects, fits
 from softdot.studies.proof.world.judge import Judge
 from softdot.studies.proof.world.march import Course, Table
 from softdot.studies.proof.world.noise import Autoregression, noises, yule_walker
 from softdot.studies.proof.world.reality import Reality, _path, baseline, dahl
 from softdot.studies.proof.world.rigs import CLAMPED, FREE, SOLID, VOLTAGE_ONLY
-from softdot.studies.proof.world.runs import Run, traced
+from softdot.studies.proof.world.runs import Run, traced_run
 
 TIME = np.arange(0.0, 2.0, 0.004)
 
@@ -28,7 +28,7 @@ def test_a_step_of_charge_decays_with_the_time_constant_of_the_input():
 def test_a_filter_passes_the_power_at_its_corner_by_half():
     sine = np.sin(2.0 * np.pi * 20.0 * TIME)
     for kind in ("bessel", "butterworth"):
-        passed = Filter(20.0, 2, kind).applied(sine, 250.0)
+        passed = Filter(20.0, 2, kind).apply(sine, 250.0)
         assert passed[TIME > 1.0].std() / sine[TIME > 1.0].std() == pytest.approx(2**-0.5, rel=0.02)
 
 
@@ -36,7 +36,7 @@ def test_noise_has_the_size_and_the_whitening_that_are_stated():
     for noise in noises().values():
         drawn = noise.draw(np.random.default_rng(1), 40_000)
         assert drawn.std() == pytest.approx(1.0, rel=0.03)
-        white = noise.whitened(drawn)[50:]
+        white = noise.whiten(drawn)[50:]
         assert white.std() == pytest.approx(1.0, rel=0.02)
         assert abs(np.corrcoef(white[1:], white[:-1])[0, 1]) < 0.02
 
@@ -93,7 +93,7 @@ def test_a_path_that_is_asked_for_sample_by_sample_accelerates_as_the_stage_does
     """Straight lines between the samples have no acceleration but at their ends, where it has no limit."""
     run = Run("a", 0.3, 0.6, 0.5)
     samples, between = run.times(250.0), run.times(1000.0)
-    asked = traced("asked", samples, run.depth(samples), None, 0.0, 0.0)
+    asked = traced_run("asked", samples, run.depth(samples), None, 0.0, 0.0)
     largest = np.abs(run.acceleration_mm_per_s2(between)).max()
     for time in (samples, between):
         assert np.abs(asked.acceleration_mm_per_s2(time)).max() == pytest.approx(largest, rel=0.05)
@@ -103,7 +103,7 @@ def test_every_effect_is_off_at_strength_zero_and_names_what_the_vocabulary_know
     from solve.mechanisms import MECHANISMS
 
     belief = baseline(CLAMPED)
-    assert applied(belief, CLAMPED, dict.fromkeys(EFFECTS, 0.0)) == belief
+    assert apply_effects(belief, CLAMPED, dict.fromkeys(EFFECTS, 0.0)) == belief
     for effect in EFFECTS.values():
         assert effect.mechanism == "" or effect.component in MECHANISMS[effect.mechanism].components
 
@@ -135,8 +135,8 @@ def test_a_nuisance_takes_what_lies_along_it_as_far_as_its_width_goes(monkeypatc
     monkeypatch.setattr("softdot.studies.proof.world.judge.record", lambda reality, _bench: reality)
     effect = np.zeros(100)
     effect[0], effect[1] = 30.0, 4.0
-    monkeypatch.setattr("softdot.studies.proof.world.judge.whitened", lambda signals, _bench: signals)
-    left = Judge(CLAMPED).left(effect, np.zeros(100))
+    monkeypatch.setattr("softdot.studies.proof.world.judge.whiten", lambda signals, _bench: signals)
+    left = Judge(CLAMPED).residual(effect, np.zeros(100))
     assert np.linalg.norm(left) == pytest.approx(np.hypot(30.0 / np.sqrt(101.0), 4.0))
 
 

@@ -23,7 +23,7 @@ def beam_deflection_m(
 def shear_deflection_m(
     force_N: float, length_m: float, width_m: float, height_m: float, modulus_Pa: float, poisson_ratio: float
 ) -> float:
-    """What shear adds at the middle, F l / (4 k G A), the same for both ends; large for a beam this thick."""
+    """Deflection of the middle by shear, F l / (4 k G A), the same for both ends; large for a beam this thick."""
     shear_modulus = modulus_Pa / (2.0 * (1.0 + poisson_ratio))
     return force_N * length_m / (4.0 * SHEAR_FACTOR * shear_modulus * width_m * height_m)
 

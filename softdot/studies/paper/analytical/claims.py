@@ -3,8 +3,8 @@
 from softdot.studies.paper.analytical.composite import bending_stiffness_Nm
 from softdot.studies.paper.analytical.softness import output_m
 from softdot.studies.paper.analytical.stack import FILM, medium1, stiffness_ratio
-from softdot.studies.paper.analytical.tables import FORMULAS, misprinted, recomputed
-from softdot.studies.paper.published import published, table_rows
+from softdot.studies.paper.analytical.tables import FORMULAS, formula_values, is_misprint
+from softdot.studies.paper.published import published_numbers, table_rows
 from softdot.studies.paper.section import Claim
 
 
@@ -18,8 +18,8 @@ def _tables() -> Claim:
         f"{key.split('.', 1)[1]} = {number.value:g} is {ours:.3g}"
         for table in ("table3", "table4")
         for case in table_rows(table)
-        for column, ours in recomputed(table)[case].items()
-        if column in FORMULAS and misprinted(number := published()[key := f"{table}.{case}.{column}"], ours)
+        for column, ours in formula_values(table)[case].items()
+        if column in FORMULAS and is_misprint(number := published_numbers()[key := f"{table}.{case}.{column}"], ours)
     ]
     return Claim("Tables 3 and 4 follow from Eqs. (3) to (11).", not wrong, "All but: " + "; ".join(wrong) + ".")
 

@@ -41,7 +41,7 @@ def _composite(h1_mm: float) -> dict[str, float | None]:
 
 
 def composite_table() -> PaperTable:
-    """What the film does to the beam."""
+    """Table of the beam of medium 1 with and without the film."""
     return PaperTable(
         "composite-beam",
         "Medium 1 and film as one beam",

@@ -6,7 +6,7 @@ from typing import Any
 from softdot.studies.paper.analytical.composite import bending_stiffness_Nm
 from softdot.studies.paper.analytical.softness import shares
 from softdot.studies.paper.analytical.stack import FILM, H1_MM, medium1
-from softdot.studies.paper.analytical.tables import recomputed
+from softdot.studies.paper.analytical.tables import formula_values
 from softdot.studies.paper.drawing import CLAMPED, FREE, LAYER_COLOURS, PAPER, SOFT, bars, label, new_figure, save
 
 LAYERS = (
@@ -62,7 +62,7 @@ def draw_shares(folder: Path) -> Path:
     panel.axvspan(0.1, 10.0, color="#eef1f4", zorder=0)
     panel.text(1.0, 1.06, "both count", ha="center", fontsize=10, color=PAPER)
     panel.text(100.0, 1.06, "medium 1 alone", ha="center", fontsize=10, color=PAPER)
-    for case, row in recomputed("table3").items():
+    for case, row in formula_values("table3").items():
         x = row["S2/S1"]
         panel.plot(x, shares(1.0, x)[0], "o", color=FREE)
         panel.annotate(case, (x, shares(1.0, x)[0]), (0, 7), textcoords="offset points", ha="center", fontsize=9)

@@ -3,7 +3,7 @@
 from softdot.studies.paper.analytical.beam import bending_softness
 from softdot.studies.paper.analytical.stack import FILM
 from softdot.studies.paper.analytical.tables import PER_MPA, bending_softness_per_MPa, softness_per_MPa
-from softdot.studies.paper.published import published
+from softdot.studies.paper.published import published_numbers
 from softdot.studies.paper.section import Answer
 from softdot.studies.paper.segment import H2_MM, INDENTATION_MM, LENGTH_MM
 
@@ -11,7 +11,7 @@ from softdot.studies.paper.segment import H2_MM, INDENTATION_MM, LENGTH_MM
 def scalar_answers() -> dict[str, Answer]:
     """Our values of the formulas that stand in the running text."""
     film = PER_MPA * bending_softness(1e-3 * LENGTH_MM, FILM.modulus_Pa, FILM.thickness_m)
-    criterion = published()["section4.criterion"].value
+    criterion = published_numbers()["section4.criterion"].value
     return {
         "section4.bending-softness-0.8": Answer(bending_softness_per_MPa(0.8, 5.0)),
         "section4.bending-softness-2": Answer(bending_softness_per_MPa(2.0, 5.0)),

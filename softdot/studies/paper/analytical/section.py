@@ -9,7 +9,7 @@ from softdot.studies.paper.analytical.claims import claims
 from softdot.studies.paper.analytical.composite_table import STRETCH, composite_rows, composite_table
 from softdot.studies.paper.analytical.scalars import scalar_answers
 from softdot.studies.paper.analytical.stack import stiffness_ratio
-from softdot.studies.paper.analytical.tables import answers, comparison, recomputed, regime_table
+from softdot.studies.paper.analytical.tables import answers, comparison, formula_values, regime_table
 from softdot.studies.paper.section import Block, Figure, Heading, Section
 
 
@@ -36,8 +36,8 @@ def section(progress: Progress, folder: Path, _executor: Executor) -> Section:
 def numbers() -> dict[str, object]:
     """Everything calculated, for paper.json."""
     return {
-        "table3": recomputed("table3"),
-        "table4": recomputed("table4"),
+        "table3": formula_values("table3"),
+        "table4": formula_values("table4"),
         "composite_beam": composite_rows(),
         "stretch_at_full_depth": STRETCH,
         "scalars": {key: answer.ours for key, answer in scalar_answers().items()},

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 
 from softdot.studies.paper.analytical.beam import bending_softness
 from softdot.studies.paper.analytical.softness import index_of_modulus, index_of_thickness, output_m, regime, softness
-from softdot.studies.paper.published import Published, published, table_rows
+from softdot.studies.paper.published import Published, published_numbers, table_rows
 from softdot.studies.paper.section import Answer, Cell, PaperTable
 from softdot.studies.paper.segment import LENGTH_MM
 
@@ -41,8 +41,8 @@ FORMULAS: dict[str, Callable[[Row], float]] = {
 HEADS = {"S1": "S₁ (10⁻⁶/Pa)", "S2": "S₂ (10⁻⁶/Pa)", "S2/S1": "S₂/S₁", "S1b": "S₁b (10⁻⁶/Pa)"}
 
 
-def recomputed(table: str) -> dict[str, dict[str, float]]:
-    """Case -> column -> value by its formula, for "table3" or "table4"."""
+def formula_values(table: str) -> dict[str, dict[str, float]]:
+    """Values by the paper's formulae, case -> column -> value, of "table3" or "table4"."""
     return {
         case: {column: FORMULAS[column](row) for column in row if column in FORMULAS}
         for case, row in table_rows(table).items()
@@ -51,7 +51,7 @@ def recomputed(table: str) -> dict[str, dict[str, float]]:
 
 def answers(table: str) -> dict[str, Answer]:
     """Our values of a table's cells; what the authors chose is taken over."""
-    ours = recomputed(table)
+    ours = formula_values(table)
     return {
         f"{table}.{case}.{column}": Answer(ours[case].get(column, printed))
         for case, row in table_rows(table).items()
@@ -63,7 +63,7 @@ def comparison(table: str) -> PaperTable:
     """One row a case; a printed value that the formula does not give is marked beside ours."""
     rows = table_rows(table)
     columns = [column for column in next(iter(rows.values())) if column in FORMULAS]
-    ours = recomputed(table)
+    ours = formula_values(table)
     given = ["h1_mm", "E2_MPa"]
     return PaperTable(
         f"paper-{table}",
@@ -82,7 +82,7 @@ def regime_table() -> PaperTable:
     """Eq. (8) for the free cases, with both unknown factors taken as 1."""
     words = {"medium1": "S₂ ≫ S₁: medium 1 alone", "both": "S₂ ≈ S₁: both", "medium2": "S₁ ≫ S₂: medium 2 alone"}
     rows: list[list[Cell]] = []
-    for case, row in recomputed("table3").items():
+    for case, row in formula_values("table3").items():
         pair = row["S1"], row["S2"]
         rows.append([case, row["S2/S1"], words[regime(*pair)], float(f"{output_m(1.0, *pair):.4g}")])
     return PaperTable(
@@ -95,11 +95,11 @@ def regime_table() -> PaperTable:
 
 
 def _cell(key: str, ours: float) -> Cell:
-    number = published()[key]
-    return f"{number.value:g} → {ours:.3g} (misprint)" if misprinted(number, ours) else float(f"{ours:.6g}")
+    number = published_numbers()[key]
+    return f"{number.value:g} → {ours:.3g} (misprint)" if is_misprint(number, ours) else float(f"{ours:.6g}")
 
 
-def misprinted(number: Published, ours: float) -> bool:
+def is_misprint(number: Published, ours: float) -> bool:
     """Whether the printed digits are not those of our value, rounded."""
     digits = f"{number.value:g}"
     decimals = len(digits.partition(".")[2])

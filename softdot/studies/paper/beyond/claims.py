@@ -28,7 +28,7 @@ def claims(study: Beyond) -> list[Claim]:
     return [
         _papers(study.ranking, "S₂/S₁", "free", "The ratio S₂/S₁ governs the free output"),
         _papers(study.ranking, "S₁b", "clamped", "The bending softness S₁b governs the clamped output"),
-        *(_corrected(study.ranking, side) for side in ("free", "clamped")),
+        *(_corrected_claim(study.ranking, side) for side in ("free", "clamped")),
         _film(study.ranking),
         *(_better(study, mesher) for mesher in MESHERS),
     ]
@@ -41,8 +41,8 @@ def _papers(ranking: Ranking, name: str, side: Boundary, text: str) -> Claim:
     return Claim(text, min(map(abs, found.values())) >= PREDICTS, evidence)
 
 
-def _corrected(ranking: Ranking, side: Boundary) -> Claim:
-    """Better than every parameter of the paper, on every sample."""
+def _corrected_claim(ranking: Ranking, side: Boundary) -> Claim:
+    """Claim that the corrected parameter is better than every parameter of the paper, on every sample."""
     ours, best, total = {}, {}, {}
     for sample in ranking.samples:
         found = correlations(ranking, sample, side)

@@ -75,7 +75,7 @@ def draw_predicted(ranking: Ranking, folder: Path) -> Path:
 
 
 def draw_search(search: Search, folder: Path) -> Path:
-    """What was tried, in order, and where it lies between free and clamped."""
+    """Draw the designs that were tried, in order, and where they lie between free and clamped."""
     figure, panels = new_figure(2, height_in=4.0)
     _trajectory(panels[0], search)
     _plane(panels[1], search)

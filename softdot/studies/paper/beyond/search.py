@@ -40,7 +40,9 @@ class Limits:
         return trial.force_N <= self.force_N and trial.film_stress_MPa <= self.film_stress_MPa
 
     def share(self, trial: DesignTrial) -> float:
-        """What is left of a design's voltage when all of it is softened, in proportion, until it keeps them."""
+        """Share of its voltage that a design keeps when all of it is softened, in proportion, until it keeps to these
+        limits.
+        """
         return min(1.0, self.force_N / trial.force_N, self.film_stress_MPa / trial.film_stress_MPa)
 
 
@@ -106,11 +108,11 @@ def candidates(trials: Sequence[DesignTrial], limits: Limits, number: int) -> li
     films = random.choice(len(FILMS_UM), 2 * NEAR)
     points = np.concatenate(near)
     points[:, -1] = (films + 0.5) / len(FILMS_UM)
-    return [rounded(design) for design in [*sample(CANDIDATES_LOG2, 100 + number), *map(design_at, points)]]
+    return [round_design(design) for design in [*sample(CANDIDATES_LOG2, 100 + number), *map(design_at, points)]]
 
 
-def rounded(design: Design) -> Design:
-    """Every variable to two digits; the film as it is sold."""
+def round_design(design: Design) -> Design:
+    """The design with every variable to two digits; the film as it is sold."""
     values = {name: float(f"{value:.2g}") for name, value in vars(design).items()}
     return replace(design, **{**values, "film_um": design.film_um})
 
@@ -128,7 +130,7 @@ def expected_gain(
 
 
 def capacitance_pF(designs: Sequence[Design]) -> Floats:
-    """Of the whole film (n,)."""
+    """Capacitance (n,) of the whole film of each design."""
     area_m2 = (1e-3 * LENGTH_MM) ** 2
     thickness_m = 1e-6 * np.array([design.film_um for design in designs])
     return np.asarray(1e12 * VACUUM_PERMITTIVITY * film().relative_permittivity * area_m2 / thickness_m)

@@ -142,7 +142,7 @@ def _softness(study: Beyond, folder: Path) -> list[Block]:
 def _design(study: Beyond, folder: Path) -> list[Block]:
     search, limits = study.search, study.search.limits
     optima = [trial.design for trial in study.compared[MESHERS[0]][1:]]
-    named = tables.named(optima, list(GOALS))
+    named = tables.named_designs(optima, list(GOALS))
     labels = [name.replace(", ", ",\n") for name in named]
     return [
         Heading("A better design"),

@@ -12,7 +12,7 @@ from softdot.studies.paper.section import Cell, PaperTable
 
 
 def sides(curves: Mapping[str, Curve]) -> PaperTable:
-    """What cases of different materials would give."""
+    """Table of the voltages between free and clamped that cases of different materials would give."""
     rows: list[list[Cell]] = []
     for name, curve in curves.items():
         between = [_digits(curve.voltage_at_V(stiffness)) for stiffness in WALLS.values()]
@@ -76,8 +76,8 @@ def final(compared: Mapping[str, Sequence[DesignTrial]], names: Sequence[str]) -
     )  # fmt: skip
 
 
-def named(optima: Sequence[Design], goals: Sequence[str]) -> dict[str, Design]:
-    """Names of the compared designs."""
+def named_designs(optima: Sequence[Design], goals: Sequence[str]) -> dict[str, Design]:
+    """Compared designs by their names."""
     return {"the paper's": PAPERS, **{f"best, {goal}": design for goal, design in zip(goals, optima, strict=True)}}
 
 

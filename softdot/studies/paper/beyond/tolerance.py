@@ -14,8 +14,8 @@ MODULUS_SPREAD, THICKNESS_SPREAD = 0.15, 0.05
 COPIES = 400
 
 
-def made(design: Design, copies: int, seed: int) -> list[Design]:
-    """Copies of a design as they would come out; the same seed errs alike for every design. The film is bought."""
+def draw_copies(design: Design, copies: int, seed: int) -> list[Design]:
+    """Draw copies of a design as they would come out; the same seed errs alike for every design. The film is bought."""
     luck = np.random.default_rng(seed).standard_normal((copies, 6))
     spread = [THICKNESS_SPREAD, MODULUS_SPREAD] * 3
     factors = np.exp(luck * spread)
@@ -26,7 +26,7 @@ def made(design: Design, copies: int, seed: int) -> list[Design]:
 
 def made_worse_V(surrogate: Surrogate, design: Design, cable_pF: float = 0.0) -> Floats:
     """Worse voltage (COPIES,) of the copies by the surrogate, with its own uncertainty; the k-th err alike."""
-    copies = made(design, COPIES, seed=0)
+    copies = draw_copies(design, COPIES, seed=0)
     guess = surrogate.draw(copies, COPIES, seed=1)
     worse = (guess.charge_pC / (capacitance_pF(copies) + cable_pF)).min(axis=0)
     one_draw_each: Floats = np.diagonal(worse)

@@ -66,10 +66,12 @@ def solve_trials(
     configs = [design_config(design, boundary, reading, mesh) for design in designs for boundary in BOUNDARIES]
     records = solve_points(configs, progress, executor=executor)
     pairs = zip(designs, records[::2], records[1::2], strict=True)
-    return [DesignTrial(design, press_of(free), press_of(held)) for design, free, held in pairs if _solved(free, held)]
+    return [
+        DesignTrial(design, press_of(free), press_of(held)) for design, free, held in pairs if _all_solved(free, held)
+    ]
 
 
-def _solved(*records: Mapping[str, Any]) -> bool:
+def _all_solved(*records: Mapping[str, Any]) -> bool:
     return all(record["status"] == "solved" for record in records)
 
 

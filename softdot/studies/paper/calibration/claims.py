@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from softdot.studies.paper.calibration.factor import Factor, charge_pC, factors
-from softdot.studies.paper.calibration.inputs import assumed
+from softdot.studies.paper.calibration.inputs import assumed_inputs
 from softdot.studies.paper.calibration.ranges import Ranges
 from softdot.studies.paper.calibration.readout import chain, swing_V
 from softdot.studies.paper.calibration.rig import FILM_MM
@@ -16,8 +16,8 @@ SEGMENT_AREAS_MM2 = {"2.5 × 16 mm": 40.0, "2.5 × 2.5 mm": 6.25}
 
 
 def claims(rig: Rig, spread: Ranges) -> list[Claim]:
-    """What section 2 concludes."""
-    found = factors(rig, assumed())
+    """Claims that section 2 concludes, checked on our presses."""
+    found = factors(rig, assumed_inputs())
     return [_order(found), _transfer(rig), _trend(spread)]
 
 
@@ -43,7 +43,7 @@ def _transfer(rig: Rig) -> Claim:
 
 def lost_more(solved: Solved, area_mm2: float) -> float:
     """Leakage of a film of another area, pressed alike, over that of the rig's film; cable left out."""
-    values = assumed(capacitance_pF=0.0)
+    values = assumed_inputs(capacitance_pF=0.0)
     curve = solved.curve(FOAM, values)
     charge = charge_pC(curve, solved.case.depth_mm, values["press_time_s"])
     share = area_mm2 / FILM_MM**2

@@ -8,11 +8,11 @@ from scipy.optimize import brentq
 
 from foundation.arrays import Floats
 from softdot.studies.paper.calibration.factor import charge_pC, dot_depth
-from softdot.studies.paper.calibration.inputs import assumed
+from softdot.studies.paper.calibration.inputs import assumed_inputs
 from softdot.studies.paper.calibration.press_curve import PressCurve
 from softdot.studies.paper.calibration.readout import chain, swing_V
 from softdot.studies.paper.calibration.solved import FOAM, SIMULATED, Solved
-from softdot.studies.paper.published import published
+from softdot.studies.paper.published import published_numbers
 
 RESISTANCES_MOHM = (0.1, 30.0)
 """What is searched and drawn."""
@@ -30,13 +30,13 @@ class Rest:
     def p(self, resistance_MOhm: float, press_time_s: float) -> float:
         """p with the assumed inputs but these two."""
         charge = charge_pC(self.curve, self.depth_mm, press_time_s)
-        values = assumed(resistance_MOhm=resistance_MOhm)
+        values = assumed_inputs(resistance_MOhm=resistance_MOhm)
         return self.ideal_V / swing_V(charge, self.curve.capacitance_pF, chain(values))
 
 
 def rest(solved: Solved) -> Rest:
     """Everything but R and T as assumed."""
-    values = assumed()
+    values = assumed_inputs()
     real, read_mm = solved.curve(FOAM, values), solved.case.depth_mm
     ideal = float(solved.curve(SIMULATED, values).voltage_at(read_mm))
     return Rest(ideal, real, dot_depth(real, read_mm, values))
@@ -81,6 +81,6 @@ def grid(solved: Solved, resistances_MOhm: Floats, times_s: Floats) -> Floats:
     return np.array([[found.p(float(r), float(t)) for r in resistances_MOhm] for t in times_s])
 
 
-def printed(case: str) -> float:
-    """p of Table 1."""
-    return published()[f"table1.{case}.p"].value
+def printed_factor(case: str) -> float:
+    """Calibration factor p of a case as Table 1 prints it."""
+    return published_numbers()[f"table1.{case}.p"].value

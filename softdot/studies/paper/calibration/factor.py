@@ -7,7 +7,7 @@ from foundation.arrays import Floats
 from softdot.studies.paper.calibration.beam import dot_depth_mm
 from softdot.studies.paper.calibration.inputs import Values
 from softdot.studies.paper.calibration.press_curve import PressCurve
-from softdot.studies.paper.calibration.readout import chain, pressed, swing_V
+from softdot.studies.paper.calibration.readout import chain, depth_fraction, swing_V
 from softdot.studies.paper.calibration.solved import FOAM, ROUND, SIMULATED, Rig, Solved
 
 DIMENSION, SPONGE, BEAM, LEAKAGE, FILTER = "2D for 3D", "foam", "beam", "leakage", "filter"
@@ -72,4 +72,4 @@ def dot_depth(curve: PressCurve, read_mm: float, values: Values) -> float:
 
 def charge_pC(curve: PressCurve, depth_mm: float, press_time_s: float) -> Floats:
     """Short-circuit charge of the film over one period, (chain.SAMPLES,)."""
-    return curve.capacitance_pF * curve.voltage_at(depth_mm * pressed(press_time_s))
+    return curve.capacitance_pF * curve.voltage_at(depth_mm * depth_fraction(press_time_s))

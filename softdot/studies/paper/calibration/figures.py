@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from softdot.studies.paper.calibration.contours import RESISTANCES_MOHM, TIMES_S, grid, printed
+from softdot.studies.paper.calibration.contours import RESISTANCES_MOHM, TIMES_S, grid, printed_factor
 from softdot.studies.paper.calibration.factor import PIECES, charge_pC, dot_depth, factor
-from softdot.studies.paper.calibration.inputs import INPUTS, Values, assumed
+from softdot.studies.paper.calibration.inputs import INPUTS, Values, assumed_inputs
 from softdot.studies.paper.calibration.ranges import Ranges, quantiles
-from softdot.studies.paper.calibration.readout import chain, pressed, recorded_V, times_s
+from softdot.studies.paper.calibration.readout import chain, depth_fraction, recorded_V, times_s
 from softdot.studies.paper.calibration.solved import FOAM, Rig, Solved
 from softdot.studies.paper.drawing import CLAMPED, FREE, PAPER, SOFT, label, new_figure, save
 
@@ -28,11 +28,11 @@ def draw_pieces(rig: Rig, spread: Ranges, folder: Path) -> Path:
     """A waterfall on a logarithmic axis: each piece starts where the one before it ended."""
     figure, panels = new_figure(2, height_in=4.2)
     for panel, (name, solved) in zip(panels, rig.items(), strict=True):
-        _waterfall(panel, factor(solved, assumed()).pieces)
+        _waterfall(panel, factor(solved, assumed_inputs()).pieces)
         low, middle, high = quantiles(spread.p(name))
         panel.plot([len(PIECES)] * 2, [low, high], color=SOFT, lw=9, alpha=0.6, solid_capstyle="butt")
         panel.plot(len(PIECES), middle, "_", color="white", ms=10, mew=2)
-        panel.plot(len(PIECES), printed(name), "D", color=PAPER, ms=7, mfc="white", mew=1.6, label="p printed")
+        panel.plot(len(PIECES), printed_factor(name), "D", color=PAPER, ms=7, mfc="white", mew=1.6, label="p printed")
         panel.set_xticks(range(len(PIECES) + 1), [*(piece.replace(" for ", "\nfor ") for piece in PIECES), "p"])
         panel.set_yscale("log")
         panel.set_ylim(0.3, 3000)
@@ -69,10 +69,17 @@ def draw_map(rig: Rig, folder: Path) -> Path:
         found = grid(solved, resistances, times)
         lines = panel.contour(resistances, times, found, LEVELS, colors=SOFT, linewidths=0.9)
         panel.clabel(lines, fmt="%g", fontsize=9)
-        panel.contour(resistances, times, found, [printed(name)], colors=COLOURS[name], linewidths=2.6)
-        panel.plot([], [], color=COLOURS[name], lw=2.6, label=f"p = {printed(name):g}")
+        panel.contour(resistances, times, found, [printed_factor(name)], colors=COLOURS[name], linewidths=2.6)
+        panel.plot([], [], color=COLOURS[name], lw=2.6, label=f"p = {printed_factor(name):g}")
         panel.axvspan(possible.low, possible.high, color=SOFT, alpha=0.12, lw=0, label="R thought possible")
-        panel.plot(assumed()["resistance_MOhm"], assumed()["press_time_s"], "o", color=PAPER, ms=6, label="assumed")
+        panel.plot(
+            assumed_inputs()["resistance_MOhm"],
+            assumed_inputs()["press_time_s"],
+            "o",
+            color=PAPER,
+            ms=6,
+            label="assumed",
+        )
         panel.set_xscale("log")
         panel.legend(fontsize=9, loc="lower right", framealpha=0.9)
         below, beside = "input resistance R (MΩ)", "press time T (s)" if panel is panels[0] else ""
@@ -83,7 +90,7 @@ def draw_map(rig: Rig, folder: Path) -> Path:
 def draw_signal(rig: Rig, folder: Path) -> Path:
     """Film and gauge over one press, as in the paper's Fig. 2."""
     figure, panels = new_figure(2)
-    values = assumed()
+    values = assumed_inputs()
     for name, solved in rig.items():
         charge, reached = _press(solved, values)
         voltage = recorded_V(charge, solved.curves[FOAM].capacitance_pF, chain(values))
@@ -99,13 +106,13 @@ def _press(solved: Solved, values: Values) -> tuple[Any, Any]:
     """Charge and depth over one period."""
     real = solved.curve(FOAM, values)
     reached = dot_depth(real, solved.case.depth_mm, values)
-    return charge_pC(real, reached, values["press_time_s"]), reached * pressed(values["press_time_s"])
+    return charge_pC(real, reached, values["press_time_s"]), reached * depth_fraction(values["press_time_s"])
 
 
 def draw_outputs(rig: Rig, folder: Path) -> Path:
     """Normalised output as in the paper's Figs. 3 and 4."""
     figure, panels = new_figure(2)
-    found = {name: factor(solved, assumed()).outputs_V_per_mm for name, solved in rig.items()}
+    found = {name: factor(solved, assumed_inputs()).outputs_V_per_mm for name, solved in rig.items()}
     for panel, place, scale, unit in ((panels[0], -1, 1e3, "mV/mm"), (panels[1], 0, 1.0, "V/mm")):
         heights = [scale * outputs[place] for outputs in found.values()]
         drawn = panel.bar([f"case {name}" for name in found], heights, color=list(COLOURS.values()), width=0.5)

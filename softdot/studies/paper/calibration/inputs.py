@@ -93,6 +93,6 @@ INPUTS = {
 }
 
 
-def assumed(**changes: float) -> dict[str, float]:
-    """The assumed value of every input, but for the changed ones."""
+def assumed_inputs(**changes: float) -> dict[str, float]:
+    """Assumed value of every input, but for the changed ones."""
     return {name: entry.assumed for name, entry in INPUTS.items()} | changes

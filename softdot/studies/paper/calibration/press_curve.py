@@ -20,14 +20,14 @@ class PressCurve:
 
     def force_at(self, depth_mm: float | Floats) -> Floats:
         """Force in N at depths of any shape."""
-        return _extended(self._force, self.depth_mm[-1], np.asarray(depth_mm))
+        return _extend(self._force, self.depth_mm[-1], np.asarray(depth_mm))
 
     def voltage_at(self, depth_mm: float | Floats) -> Floats:
         """Open-circuit voltage in V at depths of any shape."""
-        return _extended(self._voltage, self.depth_mm[-1], np.asarray(depth_mm))
+        return _extend(self._voltage, self.depth_mm[-1], np.asarray(depth_mm))
 
-    def scaled(self, force: float, voltage: float) -> "PressCurve":
-        """The curve with force and voltage scaled."""
+    def scale(self, force: float, voltage: float) -> "PressCurve":
+        """The curve with force and voltage times a factor each."""
         return replace(self, force_N=force * self.force_N, voltage_V=voltage * self.voltage_V)
 
     @cached_property
@@ -39,7 +39,7 @@ class PressCurve:
         return CubicSpline(self.depth_mm, self.voltage_V)
 
 
-def _extended(curve: CubicSpline, last_mm: float, asked: Floats) -> Floats:
-    """A cubic spline, since leakage asks for smooth slopes, and beyond the last step the tangent there."""
+def _extend(curve: CubicSpline, last_mm: float, asked: Floats) -> Floats:
+    """Values of a cubic spline, since leakage asks for smooth slopes, and beyond the last step of the tangent there."""
     beyond = np.maximum(asked - last_mm, 0.0)
     return np.asarray(curve(np.minimum(asked, last_mm)) + beyond * curve(last_mm, 1))

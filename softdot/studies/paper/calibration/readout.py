@@ -38,8 +38,10 @@ def times_s() -> Floats:
     return PERIOD_S * np.arange(SAMPLES) / SAMPLES
 
 
-def pressed(press_time_s: float) -> Floats:
-    """Fraction of the depth (SAMPLES,): a raised cosine down in the press time, up in the same, then nothing."""
+def depth_fraction(press_time_s: float) -> Floats:
+    """Fraction of the depth over time (SAMPLES,): a raised cosine down in the press time, up in the same, then
+    nothing.
+    """
     to_deepest = np.abs(times_s() - press_time_s)
     return fraction(Waveform(shape="raised-cosine", rise_s=press_time_s), press_time_s - to_deepest)
 

@@ -12,7 +12,7 @@ from softdot.studies.paper.calibration.answers import answers
 from softdot.studies.paper.calibration.beam import tip_stiffness_N_per_mm
 from softdot.studies.paper.calibration.claims import claims
 from softdot.studies.paper.calibration.factor import LEAKAGE, Factor, factors
-from softdot.studies.paper.calibration.inputs import INPUTS, assumed
+from softdot.studies.paper.calibration.inputs import INPUTS, assumed_inputs
 from softdot.studies.paper.calibration.ranges import SAMPLE_EXPONENT, Ranges, quantiles, ranges
 from softdot.studies.paper.calibration.rig import FINENESS
 from softdot.studies.paper.calibration.solved import Rig, Solved, solve_rig
@@ -27,7 +27,7 @@ def section(progress: Progress, folder: Path, executor: Executor) -> Section:
 
 def section_of(rig: Rig, folder: Path, exponent: int = SAMPLE_EXPONENT) -> Section:
     """The section from presses that are solved, with 2^exponent samples of the unknown inputs."""
-    spread, found = ranges(rig, exponent), factors(rig, assumed())
+    spread, found = ranges(rig, exponent), factors(rig, assumed_inputs())
     return Section(
         name="calibration",
         title="The calibration rig, and why simulation gave 337 times too much",
@@ -56,9 +56,9 @@ def _predictions(spread: Ranges, found: Mapping[str, Factor]) -> str:
     parts = []
     for name, one in found.items():
         low, _, high = quantiles(spread.p(name))
-        above = 100 * float((spread.p(name) >= contours.printed(name)).mean())
+        above = 100 * float((spread.p(name) >= contours.printed_factor(name)).mean())
         parts.append(
-            f"case {name} {one.p:.0f}, range {low:.0f} to {high:.0f} (printed {contours.printed(name):g}, which "
+            f"case {name} {one.p:.0f}, range {low:.0f} to {high:.0f} (printed {contours.printed_factor(name):g}, which "
             f"{above:.0f} % of the samples reach)"
         )
     return "; ".join(parts)
@@ -66,10 +66,10 @@ def _predictions(spread: Ranges, found: Mapping[str, Factor]) -> str:
 
 def _exact(rig: Rig) -> str:
     """Press times that give the printed values at the assumed resistance."""
-    resistance = assumed()["resistance_MOhm"]
-    times = {name: contours.time_for(solved, contours.printed(name), resistance) for name, solved in rig.items()}
+    resistance = assumed_inputs()["resistance_MOhm"]
+    times = {name: contours.time_for(solved, contours.printed_factor(name), resistance) for name, solved in rig.items()}
     parts = [
-        f"p = {contours.printed(name):g} needs " + ("more than 0.5 s" if time is None else f"T = {time:.2f} s")
+        f"p = {contours.printed_factor(name):g} needs " + ("more than 0.5 s" if time is None else f"T = {time:.2f} s")
         for name, time in times.items()
     ]
     return f"at R = {resistance:g} MΩ, {' and '.join(parts)}"
@@ -87,7 +87,7 @@ def _numbers(rig: Rig, spread: Ranges, found: Mapping[str, Factor]) -> dict[str,
 def _case_numbers(solved: Solved, spread: Ranges, one: Factor) -> dict[str, Any]:
     name = solved.case.name
     return {
-        "p_printed": contours.printed(name),
+        "p_printed": contours.printed_factor(name),
         "p_assumed_inputs": one.p,
         "p_5_50_95_percent": quantiles(spread.p(name)),
         "pieces": one.pieces,
@@ -95,7 +95,9 @@ def _case_numbers(solved: Solved, spread: Ranges, one: Factor) -> dict[str, Any]
         "shares_of_log_p": one.shares,
         "outputs_V_per_mm": one.outputs_V_per_mm,
         "spread_explained_by": spread.drivers(name),
-        "exact": [{"press_time_s": t, "resistance_MOhm": r} for t, r in contours.curve(solved, contours.printed(name))],
+        "exact": [
+            {"press_time_s": t, "resistance_MOhm": r} for t, r in contours.curve(solved, contours.printed_factor(name))
+        ],
         "mesh_change_of_2D_for_3D": tables.mesh_error(solved),
         "voltage_ratio_with_glue": tables.voltage_ratio(solved, "glued"),
         "voltage_ratio_with_5_kPa": tables.voltage_ratio(solved, "soft"),
@@ -165,7 +167,7 @@ def _piece_blocks(rig: Rig, spread: Ranges, found: Mapping[str, Factor], folder:
 
 def _ratio(spread: Ranges, found: Mapping[str, Factor]) -> str:
     low, middle, high = quantiles(spread.ratio())
-    measured = contours.printed("II") / contours.printed("I")
+    measured = contours.printed_factor("II") / contours.printed_factor("I")
     ours = found["II"].p / found["I"].p
     within = "within" if low <= measured <= high else "outside"
     return (
@@ -185,7 +187,7 @@ def _doubt_blocks(rig: Rig, spread: Ranges) -> list[Block]:
         "T: it can be read off the recorded strain gauge. With both, a single factor is left to test: a press with a "
         "charge amplifier takes R and T out altogether and compares film and mechanics directly.",
         Heading("What cannot be predicted"),
-        _unpredicted(rig),
+        _causes_left_out(rig),
         tables.mesh_errors(rig),
         _accuracy(rig),
     ]
@@ -202,7 +204,7 @@ def _beam() -> str:
     )
 
 
-def _unpredicted(rig: Rig) -> str:
+def _causes_left_out(rig: Rig) -> str:
     glue = [tables.voltage_ratio(solved, "glued") for solved in rig.values()]
     soft = [1.0 / tables.voltage_ratio(solved, "soft") for solved in rig.values()]
     return (

@@ -9,7 +9,7 @@ import numpy as np
 from foundation.executor import Executor
 from softdot.config.schema import Config
 from softdot.progress import Progress
-from softdot.studies.paper.calibration.inputs import INPUTS, Values, assumed
+from softdot.studies.paper.calibration.inputs import INPUTS, Values, assumed_inputs
 from softdot.studies.paper.calibration.press_curve import PressCurve
 from softdot.studies.paper.calibration.response import RigResponse
 from softdot.studies.paper.calibration.rig import (
@@ -76,7 +76,7 @@ class Solved:
         """The press of a model at given inputs: each changes the assumed one by a factor of its own."""
         factors = np.array([response.at(values[name]) for name, response in self.responses[model].items()])
         force, voltage = factors.prod(axis=0)
-        return self.curves[model].scaled(force, voltage)
+        return self.curves[model].scale(force, voltage)
 
 
 Rig = Mapping[str, Solved]
@@ -89,7 +89,7 @@ def solve_rig(progress: Progress, executor: Executor) -> dict[str, Solved]:
 
     configs = dict(_configs())
     records = dict(zip(configs, solve_points(list(configs.values()), progress, executor=executor), strict=True))
-    return {name: _solved(case, records) for name, case in CASES.items()}
+    return {name: _solved_case(case, records) for name, case in CASES.items()}
 
 
 def _configs() -> Iterator[tuple[Name, Config]]:
@@ -97,13 +97,13 @@ def _configs() -> Iterator[tuple[Name, Config]]:
     for model in (ROUND, FOAM, SIMULATED):
         for name, case in CASES.items():
             if model != FOAM:
-                yield Name(name, model, "finer"), _config(case, model, assumed(), finer=True)
-            yield Name(name, model), _config(case, model, assumed())
+                yield Name(name, model, "finer"), _config(case, model, assumed_inputs(), finer=True)
+            yield Name(name, model), _config(case, model, assumed_inputs())
             for entry, changed in VARIED[model].items():
                 for value in changed:
-                    yield Name(name, model, entry, value), _config(case, model, assumed(**{entry: value}))
+                    yield Name(name, model, entry, value), _config(case, model, assumed_inputs(**{entry: value}))
     for name, case in CASES.items():
-        values = assumed()
+        values = assumed_inputs()
         yield Name(name, SIMULATED, "glue"), _config(case, SIMULATED, values, mechanisms=GLUE)
         sponge, radius = constant_sponge(values["poisson_ratio"], TABLE_SPONGE_MPA), values["dot_radius_mm"]
         yield Name(name, SIMULATED, "soft"), rig_config(case, "plane-strain", sponge, radius)
@@ -116,7 +116,7 @@ def _config(case: RigCase, model: str, values: Values, **changes: Any) -> Config
     return rig_config(case, section, sponge, values["dot_radius_mm"], **changes)
 
 
-def _solved(case: RigCase, records: Mapping[Name, Mapping[str, Any]]) -> Solved:
+def _solved_case(case: RigCase, records: Mapping[Name, Mapping[str, Any]]) -> Solved:
     own = {name: record for name, record in records.items() if name.case == case.name}
     curves = {name: _curve(name, record) for name, record in own.items()}
 

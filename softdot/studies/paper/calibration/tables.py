@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 
 from softdot.studies.paper.calibration import contours
-from softdot.studies.paper.calibration.contours import printed
+from softdot.studies.paper.calibration.contours import printed_factor
 from softdot.studies.paper.calibration.factor import PIECES, Factor, factors
-from softdot.studies.paper.calibration.inputs import INPUTS, assumed
+from softdot.studies.paper.calibration.inputs import INPUTS, assumed_inputs
 from softdot.studies.paper.calibration.ranges import Ranges, quantiles
 from softdot.studies.paper.calibration.solved import MODELS, ROUND, SIMULATED, Rig, Solved
 from softdot.studies.paper.section import Cell, PaperTable
@@ -38,7 +38,7 @@ def span(low: float, high: float) -> str:
 
 def pieces(rig: Rig, spread: Ranges) -> PaperTable:
     """Both cases piece by piece: factor, its range, its share."""
-    found = factors(rig, assumed())
+    found = factors(rig, assumed_inputs())
     rows: list[list[Cell]] = [["ideal output (V/mm)", *_outputs(found, 0)]]
     for number, piece in enumerate(PIECES, start=1):
         cells: list[Cell] = []
@@ -48,7 +48,7 @@ def pieces(rig: Rig, spread: Ranges) -> PaperTable:
             cells.append(digits(one.outputs_V_per_mm[number]))
         rows.append([f"{piece}: {WORDS[piece]}", *cells])
     rows.append(["p, the product", *_products(found, spread)])
-    rows.append(["p printed", *(cell for name in found for cell in (printed(name), "", "", ""))])
+    rows.append(["p printed", *(cell for name in found for cell in (printed_factor(name), "", "", ""))])
     words = ("factor", "5 to 95 %", "share of ln p", "D left (V/mm)")
     headers = [f"{name}: {word}" for name in found for word in words]
     return PaperTable(
@@ -74,7 +74,7 @@ def _products(found: Mapping[str, Factor], spread: Ranges) -> list[Cell]:
 
 
 def inputs(spread: Ranges) -> PaperTable:
-    """What is not in the paper, its range, and how much of the spread of p it makes."""
+    """Table of the inputs that the paper does not state: range, reason, and share in the spread of p."""
     drivers = {name: spread.drivers(name) for name in spread.factors}
     return PaperTable(
         "calibration-inputs",
@@ -98,11 +98,14 @@ def inputs(spread: Ranges) -> PaperTable:
 
 def exact(rig: Rig) -> PaperTable:
     """Pairs of press time and input resistance that give exactly what is printed."""
-    found = {name: [contours.resistance_for(solved, printed(name), t) for t in TIMES_S] for name, solved in rig.items()}
+    found = {
+        name: [contours.resistance_for(solved, printed_factor(name), t) for t in TIMES_S]
+        for name, solved in rig.items()
+    }
     return PaperTable(
         "calibration-exact",
         "Input resistance that gives exactly the printed p",
-        ["press time T (s)", *(f"R for p = {printed(name):g}, case {name} (MΩ)" for name in found)],
+        ["press time T (s)", *(f"R for p = {printed_factor(name):g}, case {name} (MΩ)" for name in found)],
         [
             [time, *("none" if each[row] is None else digits(each[row] or 0.0) for each in found.values())]
             for row, time in enumerate(TIMES_S)
@@ -112,7 +115,7 @@ def exact(rig: Rig) -> PaperTable:
 
 
 def mesh_errors(rig: Rig) -> PaperTable:
-    """What finer meshes change, glue, and the softer sponge of Table 1."""
+    """Table of the presses, with the changes by finer meshes, glue, and the softer sponge of Table 1."""
     rows: list[list[Cell]] = []
     for name, solved in rig.items():
         depth = solved.case.depth_mm

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from softdot.studies.paper.published import published
+from softdot.studies.paper.published import published_numbers
 from softdot.studies.paper.section import Answer
 from softdot.studies.paper.segment import INDENTATION_MM, segment_config
 from softdot.studies.paper.segments.cases import ADDED_PAIRS
@@ -53,7 +53,7 @@ def _inputs() -> dict[str, Answer]:
         "section4.length_mm": Answer(segment.length_mm),
         "section4.u2_mm": Answer(config.press.depth_mm),
         "section4.h2_mm": Answer(segment.medium2.thickness_mm),
-        "section4.criterion": Answer(published()["section4.criterion"].value, "taken over"),
+        "section4.criterion": Answer(published_numbers()["section4.criterion"].value, "taken over"),
     }
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from softdot.studies.paper.drawing import CLAMPED, FREE, PAPER, bars, label, new_figure, save
-from softdot.studies.paper.published import published
+from softdot.studies.paper.published import published_numbers
 from softdot.studies.paper.segments.answers import FORCE_CASES
 from softdot.studies.paper.segments.cases import ADDED_PAIRS, CASES, LATER_PAIRS, title, together
 from softdot.studies.paper.segments.presses import SolvedPress, Study
@@ -30,15 +30,18 @@ def draw_selected(study: Study, folder: Path) -> Path:
     """Free and clamped voltage of the selected designs, as in the paper's Fig. 10."""
     figure, panels = new_figure(2, height_in=4.0)
     for panel, (reading, presses) in zip(panels, study.readings.items(), strict=True):
-        _stacked(panel, presses)
+        _draw_stacked_bars(panel, presses)
         label(panel, "layers", "voltage over 337 (mV)" if panel is panels[0] else "", READING_NAMES[reading])
-        panel.axhline(published()["section4.criterion"].value, color=PAPER, lw=1, ls=":", label="50 mV criterion")
-    _printed(panels[0])
+        panel.axhline(
+            published_numbers()["section4.criterion"].value, color=PAPER, lw=1, ls=":", label="50 mV criterion"
+        )
+    _draw_printed_sums(panels[0])
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=4, frameon=False)
     return save(figure, folder, "fig10-selected")
 
 
-def _stacked(panel: Any, presses: Presses) -> None:
+def _draw_stacked_bars(panel: Any, presses: Presses) -> None:
+    """Draw the calibrated voltage of a clamped case on that of a free one, pair by pair."""
     pairs = [*ADDED_PAIRS, *LATER_PAIRS]
     names = [together(pair).replace(" + ", "\n+ ").replace(" at ", "\nat ") for pair in pairs]
     free = [presses[pair[1]].calibrated_mV for pair in pairs]
@@ -49,9 +52,9 @@ def _stacked(panel: Any, presses: Presses) -> None:
     panel.tick_params(axis="x", labelsize=9)
 
 
-def _printed(panel: Any) -> None:
-    """The sums that the paper states."""
-    numbers = published()
+def _draw_printed_sums(panel: Any) -> None:
+    """Draw the sums that the paper states."""
+    numbers = published_numbers()
     sums = [numbers[f"section4.sum.{'+'.join(pair)}"].value for pair in ADDED_PAIRS]
     final = sum(numbers[f"fig10.{name}"].value for name in LATER_PAIRS[1])
     panel.plot([0, 1, 2, 4], [*sums, final], "D", color=PAPER, ms=7, mfc="white", mew=1.6, label="paper, sum")
@@ -64,7 +67,7 @@ def draw_forces(study: Study, folder: Path) -> Path:
     names = [title(name).replace(" ", "\n", 1) for name in FORCE_CASES]
     colours = [COLOURS[CASES[name].boundary] for name in FORCE_CASES]
     bars(panel, names, [presses[name].force_N for name in FORCE_CASES], colours)
-    paper = [published()[f"section4.force.{name}"].value for name in FORCE_CASES]
+    paper = [published_numbers()[f"section4.force.{name}"].value for name in FORCE_CASES]
     beside = [place + 0.41 for place in range(len(names))]
     panel.plot(beside, paper, "D", color=PAPER, ms=7, mfc="white", mew=1.6, label="paper")
     label(panel, "", "force at 0.3 mm (N)", READING_NAMES["plane-strain"])

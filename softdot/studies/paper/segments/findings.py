@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from softdot.studies.paper.published import published
+from softdot.studies.paper.published import published_numbers
 from softdot.studies.paper.segment import segment_config
 from softdot.studies.paper.segments import tables
 from softdot.studies.paper.segments.answers import FORCE_CASES, answers
@@ -19,7 +19,9 @@ OUT_OF_REACH = 1.5
 def findings(study: Study) -> list[str]:
     """For the top of the page."""
     slab, solid = (presses[FINAL] for presses in study.readings.values())
-    forces = [press.force_N / published()[f"section4.force.{name}"].value for name, press in _stated_forces(study)]
+    forces = [
+        press.force_N / published_numbers()[f"section4.force.{name}"].value for name, press in _stated_forces(study)
+    ]
     ratios = _voltage_ratios(study)
     near = [ratio for ratio in ratios if ratio < OUT_OF_REACH]
     return [
@@ -35,7 +37,7 @@ def findings(study: Study) -> list[str]:
 
 
 def changes(study: Study) -> str:
-    """What the true segment changes in the paper's conclusions."""
+    """Paragraph on the conclusions of the paper that the true segment changes."""
     both = claims(study)
     other = [
         f"“{slab.text}” ({VERDICTS[slab.holds]} in cross-section, {VERDICTS[solid.holds]} in a true segment)"
@@ -75,7 +77,7 @@ def _voltage_ratios(study: Study) -> list[float]:
     """Ours over the paper's: three sums, final free, final clamped."""
     ours = answers(study)
     keys = [f"section4.sum.{'+'.join(pair)}" for pair in ADDED_PAIRS] + ["fig10.final-free", "fig10.final-clamped"]
-    return [value / published()[key].value for key in keys if (value := ours[key].ours) is not None]
+    return [value / published_numbers()[key].value for key in keys if (value := ours[key].ours) is not None]
 
 
 def _furthest(ratios: list[float]) -> str:

@@ -10,7 +10,7 @@ from foundation.executor import Executor
 from softdot.config.schema import Config
 from softdot.progress import Progress
 from softdot.studies.paper.presses import solve_named
-from softdot.studies.paper.published import published
+from softdot.studies.paper.published import published_numbers
 from softdot.studies.paper.segment import Reading, segment_config
 from softdot.studies.paper.segments.cases import CASES, PaperCase
 
@@ -87,7 +87,7 @@ class Study:
 
 def calibration_factor() -> float:
     """The paper's mean p, by which all its voltages are divided."""
-    return published()["section2.p-mean"].value
+    return published_numbers()["section2.p-mean"].value
 
 
 def solve_study(progress: Progress, executor: Executor) -> Study:

@@ -62,14 +62,14 @@ def _blocks(study: Study, folder: Path) -> list[Block]:
         "simulated ones divided by the calibration factor 337; ours are divided by the same factor.",
         *_two_readings(study, folder),
         *_both_boundaries(study, folder),
-        *_selected(study, folder),
+        *_selected_designs(study, folder),
         *_depth(study, folder),
         *_every_press(study),
     ]
 
 
 def _two_readings(study: Study, folder: Path) -> list[Block]:
-    """What the readings are, and their forces."""
+    """Blocks on the two readings of the paper and their forces."""
     return [
         Heading("Two readings"),
         "The paper shows a drawing of a cross-section and gives forces in newtons, but no width. Cross-section: "
@@ -111,8 +111,8 @@ def _both_boundaries(study: Study, folder: Path) -> list[Block]:
     ]
 
 
-def _selected(study: Study, folder: Path) -> list[Block]:
-    """The designs that the paper chose from."""
+def _selected_designs(study: Study, folder: Path) -> list[Block]:
+    """Blocks on the designs that the paper chose from."""
     return [
         Heading("Selected designs: the paper's Fig. 10, and the 50 mV criterion"),
         Figure(

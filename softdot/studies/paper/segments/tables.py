@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from softdot.studies.paper.published import published
+from softdot.studies.paper.published import published_numbers
 from softdot.studies.paper.section import Cell, PaperTable
 from softdot.studies.paper.segment import Reading
 from softdot.studies.paper.segments.answers import FORCE_CASES
@@ -51,7 +51,7 @@ def _row(name: str, press: SolvedPress) -> list[Cell]:
 
 def criterion(study: Study) -> PaperTable:
     """The sum of free and clamped voltage against 50 mV, in both readings."""
-    limit = published()["section4.criterion"].value
+    limit = published_numbers()["section4.criterion"].value
     rows: list[list[Cell]] = []
     for pair in (*PAIRS, *LATER_PAIRS):
         slab, solid = (sum(each[name].calibrated_mV for name in pair) for each in study.readings.values())
@@ -75,9 +75,9 @@ def criterion(study: Study) -> PaperTable:
 
 def _printed_sum(pair: tuple[str, str]) -> float | None:
     if pair in ADDED_PAIRS:
-        return published()[f"section4.sum.{'+'.join(pair)}"].value
+        return published_numbers()[f"section4.sum.{'+'.join(pair)}"].value
     if pair == LATER_PAIRS[1]:
-        return sum(published()[f"fig10.{name}"].value for name in pair)
+        return sum(published_numbers()[f"fig10.{name}"].value for name in pair)
     return None
 
 
@@ -86,7 +86,7 @@ def readings(study: Study) -> PaperTable:
     slab, solid = study.readings["plane-strain"], study.readings["solid"]
     rows: list[list[Cell]] = []
     for name in CASES:
-        printed = published()[f"section4.force.{name}"].value if name in FORCE_CASES else None
+        printed = published_numbers()[f"section4.force.{name}"].value if name in FORCE_CASES else None
         rows.append(
             [
                 title(name),
@@ -117,7 +117,7 @@ def readings(study: Study) -> PaperTable:
 
 
 def errors(study: Study) -> PaperTable:
-    """What a finer mesh changes in one press."""
+    """Table of the changes that a finer mesh makes in one press."""
     rows: list[list[Cell]] = []
     for reading, words in SHORT_NAMES.items():
         coarse, fine = study.readings[reading][CHECKED], study.refined[reading]
@@ -141,11 +141,11 @@ def errors(study: Study) -> PaperTable:
 
 
 def variants(study: Study) -> PaperTable:
-    """What the paper leaves open, changed one at a time."""
+    """Table of the cases with one thing changed that the paper leaves open."""
     base = study.readings["plane-strain"]
     groups = {"as used here": {name: base[name] for name in VARIED}, **study.variants}
     forces, voltages = (
-        [printed.value if (printed := published().get(f"{place}.{name}")) else None for name in VARIED]
+        [printed.value if (printed := published_numbers().get(f"{place}.{name}")) else None for name in VARIED]
         for place in ("section4.force", "fig10")
     )
     return PaperTable(

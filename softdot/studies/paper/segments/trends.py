@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 
 from softdot.studies.paper.analytical.softness import output_m
-from softdot.studies.paper.analytical.tables import recomputed
-from softdot.studies.paper.published import published
+from softdot.studies.paper.analytical.tables import formula_values
+from softdot.studies.paper.published import published_numbers
 from softdot.studies.paper.section import Claim
 from softdot.studies.paper.segment import Reading
 from softdot.studies.paper.segments.cases import ADDED_PAIRS, PAIRS, title
@@ -100,7 +100,7 @@ def _softer_backing(presses: Presses) -> Verdict:
 
 
 def _criterion(presses: Presses) -> Verdict:
-    limit = published()["section4.criterion"].value
+    limit = published_numbers()["section4.criterion"].value
     sums = {pair: sum(presses[name].calibrated_mV for name in pair) for pair in ADDED_PAIRS}
     words = ", ".join(f"{' + '.join(pair)} {value:.3g} mV" for pair, value in sums.items())
     return min(sums.values()) >= limit, f"{words}, against {limit:g} mV."
@@ -131,7 +131,7 @@ def _proportional(presses: Presses) -> Verdict:
 
 def _bending_softness(presses: Presses) -> Verdict:
     """Ratios of voltage against ratios of bending softness, Eq. (12), over the soft medium 2."""
-    softness = {case: row["S1b"] for case, row in recomputed("table4").items()}
+    softness = {case: row["S1b"] for case, row in formula_values("table4").items()}
     checks = [
         (f"{a}/{b}", presses[a].calibrated_mV / presses[b].calibrated_mV, softness[a] / softness[b])
         for a, b in (("C1", "C3"), ("C3", "C5"))
@@ -142,7 +142,7 @@ def _bending_softness(presses: Presses) -> Verdict:
 
 def _equation8(presses: Presses) -> Verdict:
     """Free outputs over soft backing against Eq. (8) with equal factors; F2 is the unit."""
-    rows = recomputed("table3")
+    rows = formula_values("table3")
     checks = [
         (name, presses[name].calibrated_mV / presses["F2"].calibrated_mV, output_m(1.0, row["S1"], row["S2"]))
         for name, row in rows.items()

@@ -20,8 +20,8 @@ class Filter:
     order: int
     kind: Literal["bessel", "butterworth"] = "bessel"
 
-    def applied(self, voltage: Floats, rate_Hz: float) -> Floats:
-        """By the bilinear transform, from rest."""
+    def apply(self, voltage: Floats, rate_Hz: float) -> Floats:
+        """Filter a voltage (n,) at an even rate by the bilinear transform, from rest."""
         if self.kind == "bessel":
             sections = bessel(self.order, self.cutoff_Hz, fs=rate_Hz, output="sos", norm="mag")
         else:
@@ -53,7 +53,7 @@ class Amplifier:
         if self.limit_V is not None:
             voltage = _softly_clipped(voltage, self.limit_V)
         for one in self.filters:
-            voltage = one.applied(voltage, rate_Hz)
+            voltage = one.apply(voltage, rate_Hz)
         return np.asarray(voltage)
 
     def leaking(self, resistance_MOhm: float | None) -> "Amplifier":
@@ -62,7 +62,7 @@ class Amplifier:
         return replace(self, resistance_MOhm=1.0 / conductance if conductance else None)
 
     def input_V(self, charge_pC: Floats, film_pF: float, rate_Hz: float) -> Floats:
-        """Of the fine grid (n,): (C_f + C) V' = Q' - V / R; MOhm times pF is microseconds."""
+        """Voltage (n,) at the input on the fine grid: (C_f + C) V' = Q' - V / R; MOhm times pF is microseconds."""
         capacitance = film_pF + self.capacitance_pF
         half = 0.0 if self.resistance_MOhm is None else 0.5e6 / (rate_Hz * self.resistance_MOhm * capacitance)
         gain = 1.0 / (capacitance * (1.0 + half))

@@ -35,7 +35,7 @@ class Bench:
 
     @property
     def deepest_mm(self) -> float:
-        """Of all runs."""
+        """Largest depth of all runs."""
         return max(run.depth_mm for run in self.runs)
 
     @property

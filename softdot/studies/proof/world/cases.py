@@ -10,7 +10,7 @@ import numpy as np
 from softdot.studies.proof.world.arrays import Floats
 from softdot.studies.proof.world.bench import Bench
 from softdot.studies.proof.world.details import Details
-from softdot.studies.proof.world.effects import EFFECTS, KNOWN, STAGED, UNKNOWN, applied, fits
+from softdot.studies.proof.world.effects import EFFECTS, KNOWN, STAGED, UNKNOWN, apply_effects, fits
 from softdot.studies.proof.world.judge import Judge, judge_of, shares
 from softdot.studies.proof.world.reality import PER_RUN, Reality, Signals, baseline, keys, noise_law, noise_of, record
 from softdot.studies.proof.world.rigs import BENCHES, VOLTAGE_ONLY
@@ -50,7 +50,7 @@ class Case:
 
     @property
     def name(self) -> str:
-        """That of the recording; it says nothing."""
+        """Name of the recording, which says nothing of its content."""
         return f"case-{self.number:04d}"
 
 
@@ -71,7 +71,7 @@ class Truth:
     flaws: float = 0.0
 
     def plain(self) -> dict[str, Any]:
-        """As JSON has it."""
+        """The truth as JSON has it."""
         mechanisms = [
             {
                 "effect": name,
@@ -110,7 +110,7 @@ def plan(
 
     mechanisms : to which the known effects are restricted; () for all. ValueError where no rig can have one of them.
     """
-    known = tuple(name for name in (KNOWN[:STAGED] if staged else KNOWN) if _asked(name, mechanisms, rigs))
+    known = tuple(name for name in (KNOWN[:STAGED] if staged else KNOWN) if _is_asked(name, mechanisms, rigs))
     if not known:
         raise ValueError("none of these rigs can have one of these mechanisms")
     turns = dict.fromkeys(KINDS, 0)
@@ -124,7 +124,7 @@ def plan(
     return cases
 
 
-def _asked(name: str, mechanisms: tuple[str, ...], rigs: tuple[str, ...]) -> bool:
+def _is_asked(name: str, mechanisms: tuple[str, ...], rigs: tuple[str, ...]) -> bool:
     """Whether an effect is of these mechanisms and one of the rigs has as many channels as it needs."""
     most = max(len(BENCHES[rig].made.electrodes) for rig in rigs)
     return EFFECTS[name].channels <= most and (not mechanisms or EFFECTS[name].mechanism in mechanisms)
@@ -151,19 +151,19 @@ def _case(number: int, seed: int, kind: str, turn: int, rigs: tuple[str, ...], k
 BENCHES_FIRST = next(iter(BENCHES))
 
 
-def concealed(case: Case) -> tuple[Truth, list[Signals]]:
-    """What is true and what is recorded of it, noise included."""
+def conceal(case: Case) -> tuple[Truth, list[Signals]]:
+    """Truth of a case and its recorded runs, noise included."""
     bench, rng = BENCHES[case.bench], np.random.default_rng([case.seed, case.number])
     judge, strengths = judge_of(case.bench), _strengths(case)
     nuisance = _nuisance(bench, rng)
     plainly = replace(baseline(bench), nuisance=nuisance, details=_details(case))
-    reality = applied(plainly, bench, strengths)
-    left = judge.left(reality, plainly)
+    reality = apply_effects(plainly, bench, strengths)
+    left = judge.residual(reality, plainly)
     values = {name: EFFECTS[name].truth(bench, s) for name, s in strengths.items()}
     values = {name: {**one, **_force_ratio(name, bench, plainly, reality)} for name, one in values.items()}
     per_run = {f"{run} | {channel}": share for (run, channel), share in shares(left, bench).items()}
     named = {_nuisance_name(key): value for key, value in nuisance.items()}
-    flaws = judge.rms(judge.left(plainly, replace(plainly, details=None))) if case.details else 0.0
+    flaws = judge.rms(judge.residual(plainly, replace(plainly, details=None))) if case.details else 0.0
     truth = Truth(case, strengths, values, named, judge.rms(left), float(np.linalg.norm(left)), per_run, flaws)
     return truth, [_noisy(run, bench, rng) for run in record(reality, bench)]
 
@@ -175,8 +175,8 @@ def _nuisance_name(key: Any) -> str:
     return f"{name} of run {run}" + "".join(f", channel {number + 1}" for number in channel)
 
 
-def pressed_again(case: Case, run: Run, number: int) -> Signals:
-    """What one more run records of the same specimen, with nuisances and noise of its own; number : of those asked for.
+def press_again(case: Case, run: Run, number: int) -> Signals:
+    """Record one more run of the same specimen, with nuisances and noise of its own; number : of those asked for.
 
     RuntimeError or FloatingPointError without equilibrium.
     """
@@ -188,13 +188,13 @@ def pressed_again(case: Case, run: Run, number: int) -> Signals:
     numbered = [((name, len(bench.runs), *key[2:]), width) for name, width in here for key in keys(name, one)]
     own = {key: width * float(rng.standard_normal()) for key, width in numbered}
     believed = replace(baseline(bench), nuisance=known | own, details=_details(case))
-    reality = applied(believed, bench, _strengths(case))
+    reality = apply_effects(believed, bench, _strengths(case))
     return _noisy(record(reality, replace(bench, runs=(*bench.runs, run)))[-1], bench, rng)
 
 
 def _details(case: Case) -> Details | None:
-    """Of the specimen; None where the case has none."""
-    return Details.drawn(np.random.default_rng([case.seed, case.number, FLAWS])) if case.details else None
+    """Flaws of the specimen; None where the case has none."""
+    return Details.draw(np.random.default_rng([case.seed, case.number, FLAWS])) if case.details else None
 
 
 def _strengths(case: Case) -> dict[str, float]:
@@ -220,7 +220,7 @@ def _strength(judge: Judge, name: str, size: float) -> float:
     """At which an effect has a size on the nominal bench, or the most that is real."""
     belief, effect, strength = baseline(judge.bench), EFFECTS[name], 1.0
     for _ in range(SIZING_STEPS):
-        reached = judge.rms(judge.left(applied(belief, judge.bench, {name: strength}), belief))
+        reached = judge.rms(judge.residual(apply_effects(belief, judge.bench, {name: strength}), belief))
         better = float(np.clip(strength * np.clip(size / max(reached, 1e-6), 0.1, 10.0), 1e-3, effect.most))
         if abs(better / strength - 1.0) < 0.05:
             break
@@ -248,10 +248,12 @@ def _noisy(run: Signals, bench: Bench, rng: np.random.Generator) -> Signals:
 
 
 def rival_family(case: Case, names: tuple[str, ...]) -> list[Floats]:
-    """What effects of these names leave on the bench, at the size of the case and at half of it."""
+    """Residuals that effects of these names leave on the bench, at the size of the case and at half of it."""
     judge, belief = judge_of(case.bench), baseline(BENCHES[case.bench])
     family = []
     for name in names:
         strength = _strength(judge, name, max(case.size, 1.0))
-        family += [judge.left(applied(belief, judge.bench, {name: s}), belief) for s in (strength, 0.5 * strength)]
+        family += [
+            judge.residual(apply_effects(belief, judge.bench, {name: s}), belief) for s in (strength, 0.5 * strength)
+        ]
     return family

@@ -29,7 +29,7 @@ class Stray:
 
     @property
     def conductance_uS(self) -> float:
-        """Of the resistance before it."""
+        """Conductance of the resistance before it."""
         return 2e-6 * np.pi * self.passes_Hz * self.capacitance_pF
 
 
@@ -56,23 +56,23 @@ def voltages(
     own = [amplifier.leaking(wiring.leak_MOhm.get(n)) for n in range(len(film_pF))]
     charge = CubicSpline(time_s, charge_pC)(fine)
     if wiring.strays:
-        inputs = tied(own, wiring.strays, charge, film_pF, rate).T
+        inputs = tied_inputs_V(own, wiring.strays, charge, film_pF, rate).T
     else:
         inputs = np.array([one.input_V(q, c, rate) for one, q, c in zip(own, charge.T, film_pF, strict=True)])
     behind = [amplifier.behind(voltage, fine, rate, phase) for voltage in inputs]
-    return np.stack([wiring.slow[n].applied(v, rate) if n in wiring.slow else v for n, v in enumerate(behind)], axis=1)[
+    return np.stack([wiring.slow[n].apply(v, rate) if n in wiring.slow else v for n, v in enumerate(behind)], axis=1)[
         ::FINER
     ]
 
 
-def tied(
+def tied_inputs_V(
     amplifiers: Sequence[Amplifier],
     strays: Sequence[Stray],
     charge_pC: Floats,
     film_pF: Sequence[float],
     rate_Hz: float,
 ) -> Floats:
-    """Voltage (n, e) at inputs that strays tie together, for the charges (n, e) at even times, from rest."""
+    """Voltage (n, e) at inputs that strays tie together, for charges (n, e) at even times, from rest."""
     count, size = len(film_pF), len(film_pF) + len(strays)
     capacitance = np.zeros(size)
     conductance = np.zeros((size, size))

@@ -25,8 +25,8 @@ class Skin:
     weight: Floats
     place: Floats
 
-    def moved(self, u: Floats) -> Floats:
-        """Places (k, q, d) of the points at displacements (n, d)."""
+    def positions(self, u: Floats) -> Floats:
+        """Positions (k, q, d) of the points at displacements (n, d)."""
         return np.asarray(self.place + np.einsum("kqa,kai->kqi", self.shape, u[self.nodes]))
 
     def dofs(self, dim: int) -> Indices:
@@ -66,10 +66,10 @@ class Dot:
         self.made, self.top = made, top
 
     def touch(self, u: Floats, depth_mm: float) -> Touch:
-        """What touches at displacements (n, d)."""
+        """Distances, gaps and normals of the dot at displacements (n, d)."""
         centre = np.zeros(u.shape[1])
         centre[0], centre[-1] = self.made.offset_mm, self.made.radius_mm - depth_mm
-        arm = self.top.moved(u) - centre
+        arm = self.top.positions(u) - centre
         distance = np.linalg.norm(arm, axis=2)
         return Touch(distance, distance - self.made.radius_mm, arm / distance[..., None])
 

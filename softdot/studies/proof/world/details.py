@@ -28,8 +28,8 @@ class Details:
     seed: int
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator) -> Self:
-        """Between a third of the largest and the largest."""
+    def draw(cls, rng: np.random.Generator) -> Self:
+        """Draw flaws between a third of the largest and the largest."""
         return cls(tuple(rng.uniform(1.0 / 3.0, 1.0, 5).tolist()), int(rng.integers(2**32)))
 
     def path(self, time: Floats, stage: Floats, run: int) -> Floats:

@@ -44,7 +44,7 @@ def _layer(made: Made, name: str, **changes: Any) -> Made:
     return replace(made, layers=tuple(layers))
 
 
-def _named(made: Made, name: str) -> Layer | Film:
+def _layer_named(made: Made, name: str) -> Layer | Film:
     found = next(x for x in made.layers if getattr(x, "name", "film") == name)
     assert isinstance(found, Layer | Film)
     return found
@@ -80,7 +80,9 @@ def slow_channel(channel: int) -> Callable[[Reality, Bench, float], Reality]:
     return change
 
 
-def _tied(one: int, other: int) -> Callable[[Reality, Bench, float], Reality]:
+def _tie_inputs(one: int, other: int) -> Callable[[Reality, Bench, float], Reality]:
+    """Change of a reality that ties two inputs by a stray capacitance."""
+
     def change(reality: Reality, bench: Bench, s: float) -> Reality:
         stray = Stray((one, other), _stray_pF(bench, s))
         return replace(reality, wiring=replace(reality.wiring, strays=(*reality.wiring.strays, stray)))
@@ -156,7 +158,7 @@ def softening_layer(name: str) -> Callable[[Reality, Bench, float], Reality]:
     """A layer that softens after the largest energy."""
 
     def change(reality: Reality, bench: Bench, s: float) -> Reality:
-        energy = 0.01 * _named(reality.made, name).modulus_MPa
+        energy = 0.01 * _layer_named(reality.made, name).modulus_MPa
         return replace(reality, made=_layer(reality.made, name, damage=Damage(0.1 * s, energy)))
 
     return change
@@ -178,7 +180,7 @@ def glued_film(medium: str) -> Callable[[Reality, Bench, float], Reality]:
     """Glue in the place of the medium's skin beside the film, in series with what that skin gives way itself."""
 
     def change(reality: Reality, bench: Bench, s: float) -> Reality:
-        skin = _named(reality.made, medium)
+        skin = _layer_named(reality.made, medium)
         added = 0.01 * s / GLUE_MM  # of shear, 1/MPa
         shear = 1.0 / (1.0 / shear_modulus(skin) + added)
         bulk = 1.0 / (1.0 / bulk_modulus(skin) + added / BULK_OVER_SHEAR)
@@ -194,7 +196,7 @@ def scaled_quantity(name: str, quantity: str, per_s: float) -> Callable[[Reality
     """A quantity of a layer that is 1 + per_s s times as large."""
 
     def change(reality: Reality, bench: Bench, s: float) -> Reality:
-        layer, factor = _named(reality.made, name), 1.0 + per_s * s
+        layer, factor = _layer_named(reality.made, name), 1.0 + per_s * s
         return replace(reality, made=_layer(reality.made, name, **{quantity: factor * getattr(layer, quantity)}))
 
     return change
@@ -295,7 +297,7 @@ def crosstalk_of_pair(one: int, other: int) -> Effect:
         f"crosstalk-{one}-{other}",
         "crosstalk",
         f"channel-{one}-channel-{other}",
-        _tied(one - 1, other - 1),
+        _tie_inputs(one - 1, other - 1),
         lambda b, s: {"capacitance_pF": _stray_pF(b, s)},
         60.0,
         form="behind a resistance where a capacitance alone is fitted",

@@ -203,8 +203,8 @@ STAGED = 8
 """The first so many of the known ones come first."""
 
 
-def applied(reality: Reality, bench: Bench, strengths: Mapping[str, float]) -> Reality:
-    """Reality with these effects, name -> strength, in order."""
+def apply_effects(reality: Reality, bench: Bench, strengths: Mapping[str, float]) -> Reality:
+    """The reality with these effects, name -> strength, in order."""
     for name, strength in strengths.items():
         if strength > 0.0:
             reality = EFFECTS[name].change(reality, bench, strength)

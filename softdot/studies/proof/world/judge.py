@@ -16,10 +16,10 @@ from softdot.studies.proof.world.reality import Reality, Signals, baseline, chan
 from softdot.studies.proof.world.rigs import BENCHES
 
 
-def whitened(signals: Sequence[Signals], bench: Bench) -> Floats:
+def whiten(signals: Sequence[Signals], bench: Bench) -> Floats:
     """All answers of all runs, one after the other, in units of the innovations of their noise."""
     sigma = noise_of(bench)
-    parts = [noise_law(name).whitened(run[name]) / sigma[name] for run in signals for name in channels(bench)]
+    parts = [noise_law(name).whiten(run[name]) / sigma[name] for run in signals for name in channels(bench)]
     return np.concatenate(parts)
 
 
@@ -33,11 +33,11 @@ class Judge:
     def _tangents(self) -> Floats:
         """(t, k) by secants over one sigma."""
         belief = baseline(self.bench)
-        base, columns = whitened(record(belief, self.bench), self.bench), []
+        base, columns = whiten(record(belief, self.bench), self.bench), []
         for name, width in self.bench.nuisance:
             for key in keys(name, self.bench):
                 there = record(replace(belief, nuisance={key: width}), self.bench)
-                columns.append(whitened(there, self.bench) - base)
+                columns.append(whiten(there, self.bench) - base)
         return np.stack(columns, axis=1)
 
     @cached_property
@@ -46,9 +46,9 @@ class Judge:
         left, values, _ = np.linalg.svd(self._tangents, full_matrices=False)
         return left, 1.0 / np.sqrt(1.0 + values**2) - 1.0
 
-    def left(self, reality: Reality, without: Reality) -> Floats:
-        """What nuisances cannot explain (t,) of the difference between two realities."""
-        effect = whitened(record(reality, self.bench), self.bench) - whitened(record(without, self.bench), self.bench)
+    def residual(self, reality: Reality, without: Reality) -> Floats:
+        """Difference (t,) between two realities that nuisances cannot explain."""
+        effect = whiten(record(reality, self.bench), self.bench) - whiten(record(without, self.bench), self.bench)
         directions, factors = self._half
         return np.asarray(effect + directions @ (factors * (directions.T @ effect)))
 

@@ -67,7 +67,7 @@ def film_stress(film: Film, f: Floats, flown: Floats | None = None) -> tuple[Flo
     """S (n, 3, 3), P and dP/dF of Hooke's law between S and elastic strain; flown : plastic strain (n, 3, 3)."""
     stress = hooke(film, elastic_strain(film, f, flown))
     law = bulk_modulus(film) * VOLUME + 2.0 * shear_modulus(film) * DEVIATOR
-    return stress, f @ stress, turned(f, law[None]) + geometric(stress)
+    return stress, f @ stress, tangent_of_gradient(f, law[None]) + geometric(stress)
 
 
 def hooke(film: Film, strain: Floats) -> Floats:
@@ -85,8 +85,8 @@ def elastic_strain(film: Film, f: Floats, flown: Floats | None = None) -> Floats
     return np.asarray(strain if flown is None else strain - flown)
 
 
-def turned(f: Floats, law: Floats) -> Floats:
-    """dP/dF that comes of dS/dE (n or 1, 3, 3, 3, 3)."""
+def tangent_of_gradient(f: Floats, law: Floats) -> Floats:
+    """Part of dP/dF (n, 3, 3, 3, 3) that comes of dS/dE (n or 1, 3, 3, 3, 3)."""
     laws = np.broadcast_to(law, (len(f), 3, 3, 3, 3))
     return np.asarray(np.einsum("nim,nmjrl,nkr->nijkl", f, laws, f, optimize=True))
 

@@ -97,24 +97,24 @@ class Made:
 
     @property
     def height_mm(self) -> float:
-        """Of the whole stack."""
+        """Height of the whole stack."""
         return sum(layer.thickness_mm for layer in self.layers)
 
     @property
     def capacitance_pF(self) -> float:
-        """Of the undeformed film under all electrodes."""
+        """Capacitance of the undeformed film under all electrodes."""
         return sum(self.capacitances_pF)
 
     @property
     def capacitances_pF(self) -> tuple[float, ...]:
-        """Of the undeformed film under each electrode."""
+        """Capacitance of the undeformed film under each electrode."""
         film = self.film
         per_mm = 8.8541878128e-3 * film.relative_permittivity * self.width_mm / film.thickness_mm
         return tuple(per_mm * (high - low) for low, high in self.strips)
 
     @property
-    def mirrored(self) -> "Made":
-        """Its image in x = 0, electrodes growing along x again: the last one is the image of the first."""
+    def mirror_image(self) -> "Made":
+        """The image in x = 0, electrodes growing along x again: the last one is the image of the first."""
         strips = tuple((-high, -low) for low, high in reversed(self.electrodes))
         return replace(self, offset_mm=-self.offset_mm, electrodes=strips)
 
@@ -122,11 +122,11 @@ class Made:
     def remembers(self) -> bool:
         """Whether an answer depends on what happened before."""
         relaxes = any(isinstance(layer, Layer) and layer.spectrum for layer in self.layers)
-        return relaxes or self.damaged
+        return relaxes or self.keeps_damage
 
     @property
-    def damaged(self) -> bool:
-        """Whether it remembers for good."""
+    def keeps_damage(self) -> bool:
+        """Whether something in the stack remembers for good."""
         softens = any(isinstance(layer, Layer) and layer.damage for layer in self.layers)
         return softens or self.film.yield_MPa is not None
 

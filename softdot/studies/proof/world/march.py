@@ -63,11 +63,11 @@ def table(made: Made, depth_mm: float) -> Table:
     if made.remembers:
         raise ValueError("what remembers has no table over depth")
     if made.offset_mm < 0.0 and made.electrodes:  # solved once for both sides
-        image = table(made.mirrored, depth_mm)
+        image = table(made.mirror_image, depth_mm)
         return replace(image, course=replace(image.course, charge_pC=image.course.charge_pC[:, ::-1]))
     points = depth_mm * np.linspace(0.0, 1.0, POINTS[made.dot] + 1) ** GRADING
-    kept = _kept(f"table-{_program()}-{made.key()}-{depth_mm:.6f}")
-    course = kept.read() or kept.write(_pressed(made, points, np.ones(len(points))))
+    kept = _file_of(f"table-{_program()}-{made.key()}-{depth_mm:.6f}")
+    course = kept.load() or kept.write(_press_path(made, points, np.ones(len(points))))
     return Table(points, course)
 
 
@@ -77,12 +77,12 @@ def through_time(made: Made, time_s: Floats, depth_mm: Floats, before_mm: float)
     before_mm : where the dot has been earlier, which damage remembers; nothing relaxes any more.
     """
     marks = steps(time_s, depth_mm)
-    before_mm = before_mm if made.damaged else 0.0
+    before_mm = before_mm if made.keeps_damage else 0.0
     earlier = before_mm * np.array(EARLIER) if before_mm > 0.0 else np.zeros(0)
     path, waits = np.append(earlier, depth_mm[marks]), np.diff(time_s[marks], prepend=time_s[0] - 1.0)
-    kept = _kept(f"time-{_program()}-{made.key()}-{_digest(time_s[marks], path)}")
-    return marks, kept.read() or kept.write(
-        _pressed(made, path, np.append(np.ones(len(earlier)), waits)).last(len(marks))
+    kept = _file_of(f"time-{_program()}-{made.key()}-{_digest(time_s[marks], path)}")
+    return marks, kept.load() or kept.write(
+        _press_path(made, path, np.append(np.ones(len(earlier)), waits)).last(len(marks))
     )
 
 
@@ -106,19 +106,19 @@ def steps(time_s: Floats, depth_mm: Floats) -> list[int]:
     return marks
 
 
-def _pressed(made: Made, depth_mm: Sequence[float] | Floats, step_s: Floats) -> Course:
-    """One equilibrium after the other."""
+def _press_path(made: Made, depth_mm: Sequence[float] | Floats, step_s: Floats) -> Course:
+    """Course of a press along depths (n,), one equilibrium after the other."""
     stack = Stack(made)
     state = stack.rest()
     zero = stack.answer(state)
     answers = []
     for depth, step in zip(depth_mm, step_s, strict=True):
-        state = _moved(stack, state, float(depth), float(step))
+        state = _next_state(stack, state, float(depth), float(step))
         answers.append(stack.answer(state))
     return _course(answers, zero)
 
 
-def _moved(stack: Stack, state: State, depth_mm: float, step_s: float) -> State:
+def _next_state(stack: Stack, state: State, depth_mm: float, step_s: float) -> State:
     """The next equilibrium; without memory and touch nothing changes."""
     if depth_mm <= 0.0 and not stack.made.remembers:
         return replace(state, depth_mm=depth_mm)
@@ -150,13 +150,13 @@ def _digest(*arrays: Floats) -> str:
 
 
 @dataclass(frozen=True)
-class _Kept:
+class _CourseFile:
     """A course in a file that begins with the SHA-256 of the rest."""
 
     path: Path
 
-    def read(self) -> Course | None:
-        """None when there is none or it is damaged."""
+    def load(self) -> Course | None:
+        """Course in the file, None when there is none or it is damaged."""
         try:
             whole = self.path.read_bytes()
         except OSError:
@@ -168,7 +168,7 @@ class _Kept:
             return Course(data["force_N"], data["charge_pC"], data["area_mm2"])
 
     def write(self, course: Course) -> Course:
-        """Beside, then renamed."""
+        """Write a course beside the file, then rename it; returns the course."""
         self.path.parent.mkdir(parents=True, exist_ok=True)
         buffer = BytesIO()
         np.savez(buffer, force_N=course.force_N, charge_pC=course.charge_pC, area_mm2=course.area_mm2)
@@ -178,8 +178,8 @@ class _Kept:
         return course
 
 
-def _kept(name: str) -> _Kept:
-    return _Kept(store() / f"{name}.npz")
+def _file_of(name: str) -> _CourseFile:
+    return _CourseFile(store() / f"{name}.npz")
 
 
 def store() -> Path:

@@ -55,7 +55,7 @@ def respond(layer: Layer, f: Floats, old: Memory, step_s: float) -> tuple[Floats
     energy, p, tangent = isochoric(layer, f)
     new = old
     if layer.damage is not None:
-        p, tangent = _softened(layer, energy, p, tangent, old.energy)
+        p, tangent = _soften(layer, energy, p, tangent, old.energy)
         new = replace(new, energy=np.maximum(old.energy, energy))
     if layer.spectrum is None:
         return p, tangent, new
@@ -79,8 +79,8 @@ def _branch_step(spectrum: Spectrum, step_s: float) -> tuple[Floats, Floats]:
     return share / (1.0 + theta * a), (1.0 - (1.0 - theta) * a) / (1.0 + theta * a)
 
 
-def _softened(layer: Layer, energy: Floats, p: Floats, tangent: Floats, largest: Floats) -> tuple[Floats, Floats]:
-    """P times 1 - loss tanh((largest - W) / energy) below the largest energy."""
+def _soften(layer: Layer, energy: Floats, p: Floats, tangent: Floats, largest: Floats) -> tuple[Floats, Floats]:
+    """Stress P times 1 - loss tanh((largest - W) / energy) below the largest energy, and its tangent."""
     assert layer.damage is not None
     behind = np.maximum(largest - energy, 0.0) / layer.damage.energy_MPa
     kept = 1.0 - layer.damage.loss * np.tanh(behind)

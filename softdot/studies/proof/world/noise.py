@@ -31,8 +31,10 @@ class Autoregression:
         driven = self.sigma * rng.standard_normal(count + WARM_UP)
         return np.asarray(lfilter([1.0], [1.0, *(-a for a in self.coefficients)], driven)[WARM_UP:])
 
-    def whitened(self, values: Floats) -> Floats:
-        """Errors of one-step prediction of values (t, ...) in units of the noise's own; nothing known before."""
+    def whiten(self, values: Floats) -> Floats:
+        """Errors of one-step prediction of values (t, ...) in units of the noise's own; nothing is known before
+        them.
+        """
         return np.asarray(lfilter([1.0, *(-a for a in self.coefficients)], [1.0], values, axis=0) / self.sigma)
 
 
@@ -41,13 +43,15 @@ def noises() -> Mapping[str, Autoregression]:
     """force_N and voltage_V: from rest in SOFTDOT_RECORDINGS (presses of P(VDF-TrFE) as .npz), else as stated."""
     folder = os.environ.get("SOFTDOT_RECORDINGS")
     if folder:
-        return fitted(Path(folder))
+        return fit_noise(Path(folder))
     stated = tomllib.loads(STATED.read_text("utf-8"))
     return {name: Autoregression(tuple(one["coefficients"]), one["sigma"]) for name, one in stated.items()}
 
 
-def fitted(folder: Path, rate_Hz: float = 250.0) -> Mapping[str, Autoregression]:
-    """Yule-Walker's equations for the mean autocovariance of all files, resampled. FileNotFoundError without any."""
+def fit_noise(folder: Path, rate_Hz: float = 250.0) -> Mapping[str, Autoregression]:
+    """Noise of the channels by Yule-Walker's equations for the mean autocovariance of all files, resampled.
+    FileNotFoundError without any.
+    """
     force, voltage = [], []
     for file in sorted(folder.glob("*.npz")):
         with np.load(file) as data:
@@ -59,7 +63,7 @@ def fitted(folder: Path, rate_Hz: float = 250.0) -> Mapping[str, Autoregression]
 
 
 def yule_walker(stretches: list[Floats], order: int = ORDER) -> Autoregression:
-    """Of stretches of rest, each to its own mean; those twice as unquiet as usual were no rest."""
+    """Noise of stretches of rest, each to its own mean; those twice as unquiet as usual were no rest."""
     covariance = np.zeros(order + 1)
     usual = float(np.median([rest.std() for rest in stretches]))
     for rest in (rest for rest in stretches if rest.std() <= 2.0 * usual):

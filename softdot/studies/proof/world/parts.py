@@ -15,7 +15,7 @@ from softdot.studies.proof.world.arrays import Floats, Indices
 from softdot.studies.proof.world.grid import Grid
 from softdot.studies.proof.world.made import Film, Glue, Layer
 from softdot.studies.proof.world.memory_laws import Memory, at_rest, respond
-from softdot.studies.proof.world.plastic import Flow, flowed
+from softdot.studies.proof.world.plastic import Flow, flow_step
 
 
 def unknowns(nodes: Indices, dim: int) -> Indices:
@@ -45,8 +45,8 @@ class Part:
             return None if self.layer.yield_MPa is None else Flow.none(self.weight.size)
         return at_rest(self.layer, self.weight.size) if isinstance(self.layer, Layer) else None
 
-    def deformed(self, u: Floats) -> Floats:
-        """F (m q, 3, 3) for displacements (n, d); in two dimensions nothing moves along y."""
+    def deformation_gradients(self, u: Floats) -> Floats:
+        """Deformation gradients F (m q, 3, 3) for displacements (n, d); in two dimensions nothing moves along y."""
         d = u.shape[1]
         axes = np.array([0, 2] if d == 2 else [0, 1, 2])
         inner = np.einsum("mqaj,mai->mqij", self.gradient, u[self.nodes])
@@ -63,7 +63,7 @@ class Part:
         rubber, stands in the matrix as it was extrapolated from there (Magisano, Leonetti and Garcea, Comput. Methods
         Appl. Mech. Eng. 313, 2017): under a round dot Newton's method then takes a third of the iterations.
         """
-        f, before = self.deformed(u), self.deformed(came_from)
+        f, before = self.deformation_gradients(u), self.deformation_gradients(came_from)
         if np.linalg.det(f).min() <= 0.0:
             raise FloatingPointError("an element is turned inside out")
         if isinstance(self.layer, Film):
@@ -77,19 +77,19 @@ class Part:
         pressure = self._pressure(j - 1.0)
         extrapolated = self._pressure(j_before - 1.0 + np.einsum("nij,nij->n", slope, f - before))
         bend = laws.volume_curvature(j, cofactor, extrapolated)
-        residual, matrix = self._integrated(p + pressure[:, None, None] * cofactor, tangent + bend)
+        residual, matrix = self._integrate(p + pressure[:, None, None] * cofactor, tangent + bend)
         return residual, matrix + self._volume_matrix(cofactor), new
 
     def _sheet(
         self, film: Film, f: Floats, before: Floats, old: Memory | Flow | None
     ) -> tuple[Floats, Floats, Memory | Flow | None]:
         if isinstance(old, Flow):
-            p, tangent, new = flowed(film, f, old)
+            p, tangent, new = flow_step(film, f, old)
         else:
             (_, p, tangent), new = laws.film_stress(film, f), None
         step = f - before
         beyond = laws.hooke(film, -0.5 * np.einsum("nki,nkj->nij", step, step))
-        return *self._integrated(p, tangent + laws.geometric(beyond)), new
+        return *self._integrate(p, tangent + laws.geometric(beyond)), new
 
     @cached_property
     def _averaging(self) -> Floats:
@@ -114,7 +114,7 @@ class Part:
         axes = np.array([0, 2] if self.gradient.shape[3] == 2 else [0, 1, 2])
         return tensor[:, axes[:, None], axes].reshape(*self.weight.shape, len(axes), len(axes))
 
-    def _integrated(self, p: Floats, tangent: Floats) -> tuple[Floats, Floats]:
+    def _integrate(self, p: Floats, tangent: Floats) -> tuple[Floats, Floats]:
         """Residuals and matrices of elements from stress and tangent at the points."""
         m, q, a, d = self.gradient.shape
         axes = np.array([0, 2] if d == 2 else [0, 1, 2])

@@ -17,7 +17,7 @@ from softdot.studies.proof.world.laws import (
     elastic_strain,
     geometric,
     shear_modulus,
-    turned,
+    tangent_of_gradient,
 )
 from softdot.studies.proof.world.made import Film
 
@@ -35,8 +35,8 @@ class Flow:
         return cls(np.zeros((points, 3, 3)), np.zeros(points))
 
 
-def flowed(film: Film, f: Floats, old: Flow) -> tuple[Floats, Floats, Flow]:
-    """P (n, 3, 3), dP/dF (n, 3, 3, 3, 3) and the flow after a step to F (n, 3, 3)."""
+def flow_step(film: Film, f: Floats, old: Flow) -> tuple[Floats, Floats, Flow]:
+    """Stress P (n, 3, 3), dP/dF (n, 3, 3, 3, 3) and the flow after a step to F (n, 3, 3)."""
     assert film.yield_MPa is not None
     shear, bulk = shear_modulus(film), bulk_modulus(film)
     strain = elastic_strain(film, f, old.strain)
@@ -52,4 +52,4 @@ def flowed(film: Film, f: Floats, old: Flow) -> tuple[Floats, Floats, Flow]:
     inwards = np.where(over > 0.0, 3.0 * shear / (3.0 * shear + film.hardening_MPa) - (1.0 - kept), 0.0)
     law = bulk * VOLUME + 2.0 * shear * kept[:, None, None, None, None] * DEVIATOR
     law = law - (4.0 / 3.0 * shear * inwards)[:, None, None, None, None] * np.einsum("nij,nkl->nijkl", way, way)
-    return f @ stress, turned(f, law) + geometric(stress), new
+    return f @ stress, tangent_of_gradient(f, law) + geometric(stress), new

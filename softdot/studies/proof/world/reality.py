@@ -61,7 +61,7 @@ class Reality:
 
 
 def baseline(bench: Bench) -> Reality:
-    """What the experimenter believes."""
+    """The reality that the experimenter believes in."""
     return Reality(bench.made, bench.amplifier)
 
 
@@ -70,7 +70,7 @@ def record(reality: Reality, bench: Bench) -> list[Signals]:
     real = replace(reality, made=with_scatter(reality))
     places = {run.place_mm for run in bench.runs}
     of = {place: _mechanics(_at(reality.made, place), _at(real.made, place), bench) for place in places}
-    return [_run(real, bench, run, number, of[run.place_mm]) for number, run in enumerate(bench.runs)]
+    return [_record_run(real, bench, run, number, of[run.place_mm]) for number, run in enumerate(bench.runs)]
 
 
 def _at(made: Made, place_mm: float) -> Made:
@@ -108,7 +108,7 @@ class Mechanics:
 
 
 def with_scatter(reality: Reality) -> Made:
-    """What was made, with the declared scatter of this specimen in it."""
+    """The stack as it was made, with the declared scatter of this specimen in it."""
     made = reality.made
     layers = []
     for layer in made.layers:
@@ -118,12 +118,13 @@ def with_scatter(reality: Reality) -> Made:
     return replace(made, layers=tuple(layers))
 
 
-def _run(reality: Reality, bench: Bench, run: Run, number: int, mechanics: Mechanics) -> Signals:
+def _record_run(reality: Reality, bench: Bench, run: Run, number: int, mechanics: Mechanics) -> Signals:
+    """Signals of one run without noise."""
     time = run.times(bench.rate_Hz)
     stage, details = run.depth(time) - reality.of("offset_mm", number), reality.details
     surface = stage if details is None else details.path(time, stage, number)
     course = mechanics.course(
-        _path(reality, surface, mechanics.known), partial(_asked, reality, bench, number, mechanics.known)
+        _path(reality, surface, mechanics.known), partial(_asked_path, reality, bench, number, mechanics.known)
     )
     force = course.force_N if details is None else details.force(stage, course.force_N)
     force = force + 1e-6 * reality.mass_g * run.acceleration_mm_per_s2(time)
@@ -131,7 +132,7 @@ def _run(reality: Reality, bench: Bench, run: Run, number: int, mechanics: Mecha
         force = force + reality.guide_N * dahl(stage, BEFORE_SLIP_MM)
     charge = reality.sensitivity * course.charge_pC * ((1.0 - reality.fatigue) ** run.presses_before(time))[:, None]
     films = np.array(reality.made.capacitances_pF)
-    other = _warmth(reality, run, time) + reality.touch_pC * _touched(course)
+    other = _warmth(reality, run, time) + reality.touch_pC * _touched_share(course)
     charge = charge + other[:, None] * films / films.sum()
     amplified = voltages(_amplifier(reality, run), reality.wiring, time, charge, tuple(films), 1.7 * number)
     signals = {"time_s": time, "displacement_mm": run.depth(time)}
@@ -147,7 +148,7 @@ def _run(reality: Reality, bench: Bench, run: Run, number: int, mechanics: Mecha
     return signals
 
 
-def _asked(reality: Reality, bench: Bench, number: int, known: Table) -> AskedPath:
+def _asked_path(reality: Reality, bench: Bench, number: int, known: Table) -> AskedPath:
     """The path of the dot that a run asks for, after the runs before it at the same place."""
     run = bench.runs[number]
     paths = [
@@ -194,8 +195,8 @@ def dahl(path: Floats, travel_mm: float) -> Floats:
     return found
 
 
-def _touched(course: Course) -> Floats:
-    """Share of the largest contact area, to the power 0.8."""
+def _touched_share(course: Course) -> Floats:
+    """Share (t,) of the largest contact area, to the power 0.8."""
     return np.asarray((course.area_mm2 / max(float(course.area_mm2.max()), 1e-12)) ** 0.8)
 
 
@@ -232,5 +233,5 @@ def noise_of(bench: Bench) -> Mapping[str, float]:
 
 
 def noise_law(channel: str) -> Autoregression:
-    """Of a channel: all voltages have the same."""
+    """Noise of a channel: all voltages have the same."""
     return noises()["voltage_V" if channel.startswith("voltage") else channel]

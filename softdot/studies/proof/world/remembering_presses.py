@@ -20,7 +20,7 @@ FAINT = 0.02
 
 
 def strength(made: Made) -> float:
-    """Of the one layer that relaxes or softens; 0 without."""
+    """Strength of the one layer that relaxes or softens; 0 without."""
     of = [
         layer.spectrum.strength if layer.spectrum else layer.damage.loss if layer.damage else 0.0
         for layer in made.layers
@@ -66,14 +66,14 @@ def scaled_memory(made: Made, asked: "AskedPath", elastic: Course, nominal: Cour
     marks = courses[0][0]
     base = table(forgetful(larger), deepest_mm).at(asked.path_mm[marks])
 
-    def scaled(name: str) -> Floats:
+    def signal(name: str) -> Floats:
         changes = [getattr(course, name) - getattr(base, name) for _, course in courses]
         change = changes[0] if yields else _parabola(value, *changes)
         difference = PchipInterpolator(time[marks], change, axis=0)(time)
-        return _scaled(getattr(elastic, name), getattr(nominal, name), difference)
+        return _add_difference(getattr(elastic, name), getattr(nominal, name), difference)
 
-    force = np.where(elastic.force_N > 0.0, scaled("force_N"), 0.0)
-    return Course(force, scaled("charge_pC"), elastic.area_mm2)
+    force = np.where(elastic.force_N > 0.0, signal("force_N"), 0.0)
+    return Course(force, signal("charge_pC"), elastic.area_mm2)
 
 
 @dataclass(frozen=True)
@@ -92,8 +92,10 @@ def _parabola(value: float, near: Floats, far: Floats) -> Floats:
     return np.asarray(value * (first + bend * (value - NODES[0])))
 
 
-def _scaled(elastic: Floats, nominal: Floats, difference: Floats) -> Floats:
-    """elastic + ratio times the difference: only that is interpolated in time, for the path itself is known."""
+def _add_difference(elastic: Floats, nominal: Floats, difference: Floats) -> Floats:
+    """Elastic signal plus ratio times the difference: only that is interpolated in time, for the path itself is
+    known.
+    """
     faint = FAINT * float(np.abs(nominal).max())
     ratio = np.where(np.abs(nominal) > faint, elastic / np.where(np.abs(nominal) > faint, nominal, 1.0), 1.0)
     return np.asarray(elastic + ratio * difference)

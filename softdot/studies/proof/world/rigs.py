@@ -11,7 +11,7 @@ import numpy as np
 from softdot.studies.proof.world.amplifier import Amplifier, Filter
 from softdot.studies.proof.world.bench import LOAD_CELL, Bench
 from softdot.studies.proof.world.made import Film, Layer, Made
-from softdot.studies.proof.world.runs import CLEAR_MM, Run, Traced, rounded, traced
+from softdot.studies.proof.world.runs import CLEAR_MM, Run, Traced, smooth_step, traced_run
 
 NUISANCE = (
     ("gain", 0.02),
@@ -137,8 +137,8 @@ def _two_steps(depth_mm: float, step_s: float = 0.004) -> Traced:
     half_mm = 0.5 * depth_mm
     legs = (1.0, 0.2, half_mm + CLEAR_MM), (2.2, 0.2, half_mm), (3.6, 0.3, -depth_mm - CLEAR_MM)
     times = np.asarray(step_s * np.arange(round(4.6 / step_s) + 1), dtype=np.float64)
-    path_mm = -CLEAR_MM + sum(by_mm * rounded((times - start_s) / leg_s) for start_s, leg_s, by_mm in legs)
-    return replace(traced("two steps", times, np.asarray(path_mm), None, 0.0, 0.0), count=1)
+    path_mm = -CLEAR_MM + sum(by_mm * smooth_step((times - start_s) / leg_s) for start_s, leg_s, by_mm in legs)
+    return replace(traced_run("two steps", times, np.asarray(path_mm), None, 0.0, 0.0), count=1)
 
 
 ONCE = (

@@ -47,8 +47,8 @@ class Run:
         depth = np.full_like(time_s, -CLEAR_MM)
         start = self.lead_s
         for _ in range(self.count):
-            up = rounded((time_s - start) / self.rise_s)
-            down = rounded((time_s - start - self.rise_s - self.hold_s) / self.rise_s)
+            up = smooth_step((time_s - start) / self.rise_s)
+            down = smooth_step((time_s - start - self.rise_s - self.hold_s) / self.rise_s)
             depth += (self.depth_mm + CLEAR_MM) * (up - down)
             start += 2.0 * self.rise_s + self.hold_s + self.pause_s
         return depth
@@ -78,11 +78,13 @@ class Traced(Run):
 
     @property
     def length_s(self) -> float:
-        """Of what is asked for."""
+        """Duration of the path that is asked for."""
         return float(self.asked_s[-1])
 
     def depth(self, time_s: Floats) -> Floats:
-        """As asked for, corners rounded; smooth between the samples, as a mass feels its acceleration."""
+        """Depth (n,) at times (n,) as asked for, corners rounded; smooth between the samples, as a mass feels its
+        acceleration.
+        """
         return np.asarray(self._path(np.clip(time_s, self.asked_s[0], self.asked_s[-1])))
 
     @cached_property
@@ -95,11 +97,11 @@ class Traced(Run):
         return np.asarray(np.maximum(np.searchsorted(touches, time_s, "right") - 1, 0), dtype=np.float64)
 
 
-def traced(
+def traced_run(
     label: str, asked_s: Floats, asked_mm: Floats, resistance_MOhm: float | None, added_pF: float, place_mm: float,
     load_cell: bool = False,
 ) -> Traced:  # fmt: skip
-    """A run along a path (n,) that touches at least once."""
+    """Run along a path (n,) that touches at least once."""
     touch_s = float(asked_s[np.argmax(asked_mm > 0.0)])
     return Traced(
         label, float(asked_mm.max()), 0.0, 0.0, resistance_MOhm, added_pF, lead_s=touch_s, asked_s=asked_s,
@@ -107,7 +109,7 @@ def traced(
     )  # fmt: skip
 
 
-def rounded(share: Floats) -> Floats:
-    """0 to 1 with continuous acceleration (a quintic step)."""
+def smooth_step(share: Floats) -> Floats:
+    """Rise from 0 to 1 with continuous acceleration (a quintic step)."""
     x = np.clip(share, 0.0, 1.0)
     return np.asarray(x**3 * (10.0 - 15.0 * x + 6.0 * x**2))

@@ -50,7 +50,7 @@ class Answer:
 
     @property
     def charge_pC(self) -> float:
-        """Of all electrodes."""
+        """Charge of all electrodes."""
         return sum(self.charges_pC)
 
 
@@ -99,7 +99,7 @@ class Stack:
     def _newton(self, old: State, depth_mm: float, step_s: float) -> State:
         u = came_from = old.u + old.slope * (depth_mm - old.depth_mm)
         for _ in range(MOST_ITERATIONS):
-            residual, matrix, memory = self._assembled(u, came_from, old.memory, depth_mm, step_s)
+            residual, matrix, memory = self._assemble(u, came_from, old.memory, depth_mm, step_s)
             size = self._size(residual)
             if size < TOLERANCE:
                 way = depth_mm - old.depth_mm
@@ -114,9 +114,10 @@ class Stack:
     def _size(self, residual: Floats) -> float:
         return float(np.abs(residual[self.free]).max())
 
-    def _assembled(
+    def _assemble(
         self, u: Floats, came_from: Floats, old: Memories, depth_mm: float, step_s: float
     ) -> tuple[Floats, sp.csr_matrix, Memories]:
+        """Residual, tangent and memories at displacements u (n, d) and a depth, after a step from came_from."""
         scatter, memory = _Scatter(u.size), []
         for part, before in zip(self.parts, old, strict=True):
             residual, matrices, after = part.elements(u, came_from, before, step_s)
@@ -139,7 +140,7 @@ class Stack:
         number, film = next((n, part) for n, part in enumerate(self.parts) if isinstance(part.layer, Film))
         flow = state.memory[number]
         flown = flow.strain if isinstance(flow, Flow) else None
-        stress = laws.film_stress(self.made.film, film.deformed(state.u), flown)[0]
+        stress = laws.film_stress(self.made.film, film.deformation_gradients(state.u), flown)[0]
         density = np.einsum("nii,i->n", stress, np.array(self.made.film.d)) / self.made.film.thickness_mm
         collected = density * film.weight.ravel()
         force, area = self.dot.force_and_area(state.u, state.depth_mm)
@@ -147,7 +148,7 @@ class Stack:
         return Answer(self.scale * force, charges, self.scale * area)
 
     def _shares(self, film: Part) -> Iterator[Floats]:
-        """Of what is at the points of the film (n,), the share that each electrode collects.
+        """Shares (n,) of the charge at the points of the film that each electrode collects.
 
         Of the half of a ridge in the middle an electrode has its own part and the image of the other one.
         """
@@ -213,7 +214,7 @@ class _Scatter:
         self.values: list[Floats] = []
 
     def add(self, dofs: Indices, residual: Floats, matrices: Floats) -> None:
-        """Of more elements."""
+        """Add the residuals and matrices of more elements."""
         self.residual += np.bincount(dofs.ravel(), residual.ravel(), len(self.residual))
         self.rows.append(np.broadcast_to(dofs[:, :, None], matrices.shape).ravel())
         self.columns.append(np.broadcast_to(dofs[:, None, :], matrices.shape).ravel())
