@@ -54,7 +54,8 @@ class Case(PreparedPress):
 
     @classmethod
     def load(cls, path: Path | str | None = None, settings: Sequence[str] = ()) -> "Case":
-        """From a TOML file, or the default design; settings : 'dotted.key=value' after the file. InputError.
+        """Load a case from a TOML file, or the default design; settings : 'dotted.key=value' after the file.
+        InputError.
 
         >>> Case.load(settings=["press.indentation_mm=0.2"]).config.press.indentation_mm
         0.2
@@ -63,7 +64,7 @@ class Case(PreparedPress):
 
     @cached_property
     def model(self) -> Model:
-        """What the solver is told, mechanisms switched on. InputError; of an array take over or by_cell."""
+        """Model of the solver, mechanisms switched on. InputError; of an array take over or by_cell."""
         refuse_array(self.config)
         return super().model
 
@@ -85,45 +86,47 @@ class Case(PreparedPress):
 
     @property
     def warnings(self) -> list[str]:
-        """All that a user should know before the solution, of an array about all its presses. InputError."""
+        """Warnings before the solution, of an array about all its presses. InputError."""
         from softdot.arrays.case import ArrayCase
 
         return super().warnings if self.config.array is None else ArrayCase(self.config).warnings
 
     @property
     def cost(self) -> "Cost":
-        """What a run will take, of an array its presses over each segment. InputError."""
+        """Expected cost of a run, of an array that of its presses over each segment. InputError."""
         from softdot.arrays.case import ArrayCase
 
         return super().cost if self.config.array is None else ArrayCase(self.config).cost
 
     @cached_property
-    def sized(self) -> Config:
+    def sized_config(self) -> Config:
         """The configuration with the element sizes that mesh.accuracy_percent asks for. InputError."""
         from softdot.tolerances.accuracy import with_sizes_for_accuracy
 
         return with_sizes_for_accuracy(self.config)
 
     def uncertainty(self, summary: dict[str, Any]) -> dict[str, Any]:
-        """How far the last force and voltage of a summary can be trusted."""
+        """Uncertainty of the last force and voltage of a summary."""
         from softdot.tolerances.uncertainty import uncertainty
 
-        return uncertainty(self.sized, summary)
+        return uncertainty(self.sized_config, summary)
 
     def derivatives(self, keys: Sequence[str]) -> "list[Derivative]":
-        """Of force, charge and voltage along the press by keys such as "segment.film.thickness_um". InputError."""
-        from softdot.differentiation import converged_derivatives
+        """Derivatives of force, charge and voltage along the press by keys such as "segment.film.thickness_um".
+        InputError.
+        """
+        from softdot.differentiation import derivatives_of_press
 
-        return converged_derivatives(self.config, keys, self.solved_mesh)
+        return derivatives_of_press(self.config, keys, self.solved_mesh)
 
     def kit(self, folder: Path | str) -> dict[str, Any]:
-        """The fabrication kit in a folder, as `softdot kit` writes it; returns kit.json. InputError."""
+        """Write the fabrication kit into a folder, as `softdot kit` does; returns kit.json. InputError."""
         from softdot.kit.folder import make_kit
 
         return make_kit(self.config, Path(folder))
 
     def save(self, folder: Path | str) -> dict[str, Any]:
-        """All files of `softdot run` in a folder; returns summary.json. InputError."""
+        """Write all files of `softdot run` into a folder; returns summary.json. InputError."""
         from softdot.run_folder import run_case
 
         return run_case(self, Path(folder))

@@ -22,7 +22,7 @@ RELATIVE_STEP = 1e-4
 
 @dataclass(frozen=True)
 class Derivative:
-    """d(quantity)/d(key), in the quantity's unit over the key's own; (t,) over the times of the press.
+    """Derivatives d(quantity)/d(key), in the quantity's unit over the key's own; (t,) over the times of the press.
 
     readout_voltage_V is None without an amplifier: no [readout] and no mechanism of one.
     """
@@ -36,8 +36,10 @@ class Derivative:
     readout_voltage_V: Floats | None
 
 
-def converged_derivatives(config: Config, keys: Sequence[str], tet_mesh: TetMesh) -> list[Derivative]:
-    """As press_with_derivatives, without the press. InputError for the keys, and where it does not converge."""
+def derivatives_of_press(config: Config, keys: Sequence[str], tet_mesh: TetMesh) -> list[Derivative]:
+    """Derivatives along the press of a configuration. InputError for the keys, and where the press does not
+    converge.
+    """
     result, found = press_with_derivatives(config, keys, tet_mesh)
     if not result.converged:
         raise InputError(f"the press stopped early: {result.failure}")
@@ -67,7 +69,7 @@ def variations_of(config: Config, keys: Sequence[str]) -> dict[str, "Variation"]
     variations = {}
     for key in keys:
         step = RELATIVE_STEP * abs(value_of(config, key))
-        below, above = (model_of(_varied(config, key, sign * step)) for sign in (-1.0, 1.0))
+        below, above = (model_of(_with_change(config, key, sign * step)) for sign in (-1.0, 1.0))
         variations[key] = Variation(below, above, 2.0 * step)
     return variations
 
@@ -98,7 +100,7 @@ def value_of(config: Config, key: str) -> float:
 
 
 def _parts(key: str) -> list[str | int]:
-    """segment.film.electrodes[0].size_mm[1] -> its names and indices."""
+    """Names and indices of a key: segment.film.electrodes[0].size_mm[1] -> segment, film, electrodes, 0, size_mm, 1."""
     parts: list[str | int] = []
     for name in key.split("."):
         head, *indices = name.replace("]", "").split("[")
@@ -106,7 +108,8 @@ def _parts(key: str) -> list[str | int]:
     return parts
 
 
-def _varied(config: Config, key: str, change: float) -> Config:
+def _with_change(config: Config, key: str, change: float) -> Config:
+    """The configuration with a change added to the value of one key."""
     tables = copy.deepcopy(config.model_dump(mode="json", exclude_none=True))
     table: Any = tables
     *path, last = _parts(key)

@@ -41,22 +41,20 @@ class PreparedPress:
 
     @cached_property
     def layout(self) -> ArrayLayout | None:
-        """The places of the segments of an array, None for one segment. InputError for a pitch that no standard
-        states.
-        """
+        """Layout of the segments of an array, None for one segment. InputError for a pitch that no standard states."""
         config = self.config
         return None if config.array is None else array_layout(config.array, config.segment, config.dot)
 
     @cached_property
     def model(self) -> Model:
-        """The solver's model with mechanisms switched on; of an array, that of one wide segment. InputError."""
+        """Model of the solver with mechanisms switched on; of an array, that of one wide segment. InputError."""
         if self.layout is None:
             return model_of(self.config)
         stated = as_segment(self.config, self.layout)
         return array_model(model_of(stated), stated)
 
     @cached_property
-    def checked(self) -> tuple[DotShape, list[str]]:
+    def checked_design(self) -> tuple[DotShape, list[str]]:
         """The dot at rest, and warnings about the design. InputError for a press that cannot be solved."""
         from softdot.checks import check_case
 
@@ -67,7 +65,7 @@ class PreparedPress:
         """All warnings that need no solution. InputError for a press that cannot be solved."""
         from softdot.checks import design_warnings
 
-        return [*self.checked[1], *design_warnings(self.model)]
+        return [*self.checked_design[1], *design_warnings(self.model)]
 
     @property
     def elements(self) -> float:
@@ -86,7 +84,7 @@ class PreparedPress:
     @cached_property
     def dot(self) -> DotShape:
         """The dot at rest. InputError; presses of an array are checked together, and some of a kernel are beyond it."""
-        return self.checked[0] if self.layout is None else resolve_dot(self.model.dot, self.model.segment)
+        return self.checked_design[0] if self.layout is None else resolve_dot(self.model.dot, self.model.segment)
 
     @cached_property
     def parts(self) -> "Sequence[Part]":
@@ -114,11 +112,11 @@ class PreparedPress:
         at_rest = self.dot.origin_mm - [0.0, 0.0, self.model.dot.gap_mm]  # a gap is not another mesh
         touching = replace(self.dot, origin_mm=at_rest)
         if self.layout is not None:
-            return array_mesh(self.layout, touching, self.sized.mesh, self.planes)
-        return mesh.build(self.model.segment, touching, self.sized.mesh, self.planes)
+            return array_mesh(self.layout, touching, self.sized_config.mesh, self.planes)
+        return mesh.build(self.model.segment, touching, self.sized_config.mesh, self.planes)
 
     @property
-    def sized(self) -> Config:
+    def sized_config(self) -> Config:
         """The configuration with the element sizes that are meshed."""
         return self.config
 
@@ -134,7 +132,7 @@ class PreparedPress:
         """Numbers on the solved mesh, as in summary.json."""
         from mesh.quality import measure_quality
 
-        sizes = {} if self.config.mesh.file is not None else self.sized.mesh.sizes_mm
+        sizes = {} if self.config.mesh.file is not None else self.sized_config.mesh.sizes_mm
         found = {**measure_quality(self.solved_mesh, self.model.segment).as_dict(), **sizes}
         unknown = () if self.layout is None else ("region_volume_error", "straight_edges")
         return {name: value for name, value in found.items() if name not in unknown}

@@ -33,7 +33,7 @@ FIGURE_SIZE_IN, SCREEN_DPI = (8.0, 3.2), 100
 
 
 class Pressed:
-    """What Case.press gives. All arrays have one value for each reported step (s,); index 0 is the unloaded state.
+    """Result of Case.press. All arrays have one value for each reported step (s,); index 0 is the unloaded state.
 
     result : the solver's own result with its fields, in SI units. Where electrodes have no names they are taken in
     parallel. What is pressed may be a segment or an array, whose electrodes are its segments.
@@ -60,7 +60,7 @@ class Pressed:
         """When the waveform first comes to each step."""
 
     def _by_electrode(self, values: Floats) -> dict[str, Floats]:
-        """values : (s, e)."""
+        """Values (s, e) as one array (s,) for each electrode, by its name."""
         return dict(zip(self.result.electrode_names, values.T, strict=True))
 
     @property
@@ -75,12 +75,12 @@ class Pressed:
 
     @property
     def warnings(self) -> list[str]:
-        """What a user should know, before and after the solution."""
+        """Warnings from before and after the solution."""
         return [*self.case.warnings, *self.doubts]
 
     @cached_property
     def doubts(self) -> list[str]:
-        """Why numbers of this solution should be doubted, a sentence each."""
+        """Doubts about numbers of this solution, a sentence each."""
         from softdot.checks import course_warnings, result_warnings
 
         model = self.case.model
@@ -94,25 +94,27 @@ class Pressed:
 
     @property
     def readout_voltage_V(self) -> Floats | None:
-        """Behind the amplifier (s,); None without one."""
+        """Voltage (s,) behind the amplifier; None without one."""
         found = self.course.together_V
         return None if found is None else found[self.course.solved]
 
     @property
     def channel_voltages_V(self) -> Floats | None:
-        """Of each electrode behind an amplifier of its own, (e, s); None without one."""
+        """Voltage (e, s) of each electrode behind an amplifier of its own; None without one."""
         found = self.course.channels_V
         return None if found is None else found[self.course.solved].T
 
     @property
     def signals_V(self) -> dict[str, Floats]:
-        """What is read of each electrode by its name: behind an amplifier of its own, without one at open circuit."""
+        """Voltages that are read, by the names of the electrodes: behind an amplifier of each, without one at open
+        circuit.
+        """
         behind = self.channel_voltages_V
         return self.voltages_V if behind is None else self._by_electrode(behind.T)
 
     @property
     def film_capacitance_pF(self) -> float:
-        """Of the undeformed film under all electrodes."""
+        """Capacitance of the undeformed film under all electrodes."""
         return 1e12 * float(self.result.capacitance_F.sum())
 
     @property
@@ -174,21 +176,21 @@ class Pressed:
         from export.course_figure import course_figure
 
         if self.case.is_amplified or self.result.follows_time or self.case.model.press.waveform is not None:
-            return _shown(course_figure(self.course, self.result.electrode_names))
+            return _as_notebook_picture(course_figure(self.course, self.result.electrode_names))
         figure = Figure(figsize=FIGURE_SIZE_IN, layout="constrained")
         shown = {"reaction force (N)": self.reaction_force_N, "open-circuit voltage (V)": self.open_circuit_voltage_V}
         for axes, (name, values) in zip(figure.subplots(1, 2), shown.items(), strict=True):
             axes.plot(self.indentation_mm, values, "o-", markersize=3)
             axes.set(xlabel="indentation (mm)", ylabel=name)
             axes.grid(alpha=0.3)
-        return _shown(figure)
+        return _as_notebook_picture(figure)
 
     def plot_film(self) -> "Figure":
         """Strain and charge density of the film at the deepest step, as in film.png of `softdot run`."""
         from export.film_maps import film_figure
         from export.pictures import deepest
 
-        return _shown(film_figure(self.result.tet_mesh, deepest(self.result), self.result.film_peak))
+        return _as_notebook_picture(film_figure(self.result.tet_mesh, deepest(self.result), self.result.film_peak))
 
     def _repr_html_(self) -> str:
         """For notebooks: how it ended, and a table of the steps."""
@@ -208,8 +210,8 @@ class Pressed:
         return "Pressed(" + ", ".join(f"{name}={value:.4g}" for name, value in values.items()) + f"{state})"
 
 
-def _shown(figure: "Figure") -> "Figure":
-    """The figure, which a notebook shows as a picture also where pyplot has not been imported."""
+def _as_notebook_picture(figure: "Figure") -> "Figure":
+    """The figure, which a notebook then shows as a picture also where pyplot has not been imported."""
 
     def png() -> bytes:
         buffer = BytesIO()

@@ -63,7 +63,7 @@ def run_case(
     progress = progress or Logged()
     with name_missing_library(), lines_when_interactive():
         check_formats(mesh_formats)
-        _ = case.checked
+        _ = case.checked_design
         window = ensure_rendering()
         # the second process ends first: it must write nothing into a folder that is being removed
         with staged_folder(out, RUN) as folder, ask or SecondProcess() as second:
@@ -94,7 +94,7 @@ def _fill_folder(
     try:
         with clock("mesh"):
             # a slice is pressed before another process has loaded the solver
-            ahead = ask(fill_cache, case.sized) if config.segment.section == "solid" else None
+            ahead = ask(fill_cache, case.sized_config) if config.segment.section == "solid" else None
             ask(warm_drawing)
             quality = case.mesh_quality
     except MeshingError as error:
@@ -120,7 +120,7 @@ def _fill_folder(
         progress.stage("uncertainty")
         with clock("uncertainty"):
             wait((ahead,) if ahead is not None else ())
-            summary |= uncertainty(case.sized, summary)
+            summary |= uncertainty(case.sized_config, summary)
     clock.seconds["geometry"] = cad.result()
     progress.stage("export")
     with clock("export"):

@@ -218,7 +218,7 @@ IDLE = {
 @for_each(("key", "tables"), IDLE.items(), ids=lambda value: str(value)[:60])
 def test_a_place_or_a_number_that_changes_nothing_here_is_refused(key, tables):
     with pytest.raises(InputError) as refused:
-        _ = Case(**tables).checked
+        _ = Case(**tables).checked_design
     assert str(refused.value).startswith(key)
 
 
@@ -246,14 +246,14 @@ def test_the_time_of_a_rise_beside_a_file_acts_only_where_it_starts_pressed(tmp_
         waveform = {"shape": "file", "file": str(tmp_path / f"{first}.csv"), "rise_s": 0.3}
         case = Case(press={"waveform": waveform})
         if first:
-            assert case.checked
+            assert case.checked_design
         else:
             with pytest.raises(InputError, match=r"press\.waveform\.rise_s = 0\.3: acts only where the first row"):
-                _ = case.checked
+                _ = case.checked_design
 
 
 def test_the_place_of_a_plate_is_told_to_change_nothing():
-    told = Case(segment={"boundary": "free"}, dot={"shape": "plate", "offset_mm": [0.1, 0.0]}).checked[1]
+    told = Case(segment={"boundary": "free"}, dot={"shape": "plate", "offset_mm": [0.1, 0.0]}).checked_design[1]
     assert "dot.offset_mm = [0.1, 0.0]: changes nothing, as a plate has no middle" in told
 
 
@@ -261,9 +261,9 @@ def test_a_slide_is_looked_at_on_its_whole_way():
     """Over the edge of a free segment it is told, onto a held rim refused; back at its end or not."""
     way = {"path_xy_mm": [[1.2, 0.0], [0.0, 0.0]], "indentation_mm": 0.1}
     free = Case(segment={"boundary": "free"}, press=way)
-    assert any("beyond the edge of the segment" in one for one in free.checked[1])
+    assert any("beyond the edge of the segment" in one for one in free.checked_design[1])
     with pytest.raises(InputError, match="meets the held rim"):
-        _ = Case(press=way).checked
+        _ = Case(press=way).checked_design
 
 
 def test_the_schema_refuses_the_same_keys():
@@ -347,7 +347,7 @@ FOLLOWS = {
 
 @for_each("tables", FOLLOWS.values(), ids=FOLLOWS)
 def test_what_follows_from_a_mistake_is_no_second_one(tables):
-    found, _ = mistakes(tables, lambda rest: Case(config_from(with_default_design(rest))).checked)
+    found, _ = mistakes(tables, lambda rest: Case(config_from(with_default_design(rest))).checked_design)
     assert len(found) == 1
 
 

@@ -57,7 +57,7 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
         (folder / "report.html").write_text("stand-in", "utf-8")
 
     fakes = SimpleNamespace(
-        checked=lambda *_: (cap_of_height(0.5), []),
+        checked_design=lambda *_: (cap_of_height(0.5), []),
         parts=lambda *_: [],
         write_cad=file_writer("segment.step"),
         mesh=lambda *_: one_tetrahedron(),
@@ -71,7 +71,7 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
         return lambda *args, **_: getattr(fakes, name)(*args)  # looked up each time: a test can exchange one
 
     monkeypatch.setattr(assembly, "build_parts", called("parts"))
-    for name in ("checked", "mesh", "mesh_quality"):
+    for name in ("checked_design", "mesh", "mesh_quality"):
         monkeypatch.setattr(Case, name, property(called(name)))
     monkeypatch.setattr(Case, "solve", called("solve"))
     monkeypatch.setattr(second_process, "write_cad", called("write_cad"))

@@ -42,7 +42,7 @@ KEYS = (
 
 
 @pytest.fixture
-def checked(tmp_path, capfd):
+def checked_design(tmp_path, capfd):
     def check(text, *more):
         path = tmp_path / "mine.toml"
         path.write_text(text, "utf-8")
@@ -80,7 +80,7 @@ def test_a_random_mistake_is_among_those_told(example):
 
 
 def _check(tables):
-    return Case(config_from(with_default_design(tables))).checked
+    return Case(config_from(with_default_design(tables))).checked_design
 
 
 def test_a_good_file_is_told_its_mesh_time_and_memory(checked, monkeypatch):

@@ -53,12 +53,12 @@ def test_a_file_that_states_the_whole_stack_gets_no_effector(loaded):
 def test_a_dome_needs_its_diameter(loaded):
     config = loaded('[segment.effector]\nshape = "dome"')
     with pytest.raises(InputError, match=r"segment.effector.diameter_mm is missing: shape = 'dome' needs it"):
-        _ = Case(config).checked
+        _ = Case(config).checked_design
 
 
 def test_an_explicit_dot_does_not_meet_the_standard_of_the_default(loaded):
     config = loaded("[dot]\nradius_mm = 1.0")
-    _ = Case(config).checked
+    _ = Case(config).checked_design
     assert config.dot.standard is None
     assert "dot.standard" not in config.from_default
 
@@ -71,7 +71,7 @@ def test_a_force_takes_the_place_of_the_depth(loaded):
 
 def test_a_slice_is_pressed_by_a_ridge(loaded):
     config = loaded('[segment]\nsection = "plane-strain"')
-    _ = Case(config).checked
+    _ = Case(config).checked_design
     assert config.dot.shape == "ridge"
 
 

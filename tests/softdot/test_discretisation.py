@@ -116,25 +116,28 @@ def test_sizes_are_chosen_so_that_the_stated_error_is_as_small_as_asked():
             "discretisation_error"
         ]
         assert max(found["force_percent"], found["voltage_percent"]) <= asked
-    assert fine.sized.mesh.element_size_mm < 0.8 * coarse.sized.mesh.element_size_mm
-    ratios = [case.sized.mesh.contact_element_size_mm / case.sized.mesh.element_size_mm for case in (coarse, fine)]
+    assert fine.sized_config.mesh.element_size_mm < 0.8 * coarse.sized_config.mesh.element_size_mm
+    ratios = [
+        case.sized_config.mesh.contact_element_size_mm / case.sized_config.mesh.element_size_mm
+        for case in (coarse, fine)
+    ]
     assert ratios == pytest.approx([1.0 / 3.0, 1.0 / 3.0])
-    assert fine.mesh_quality["element_size_mm"] == fine.sized.mesh.element_size_mm
+    assert fine.mesh_quality["element_size_mm"] == fine.sized_config.mesh.element_size_mm
 
 
 def test_sizes_of_a_press_whose_path_matters_are_those_of_its_elastic_baseline():
-    assert sized(2.0, mechanisms=[RELAXING]).sized.mesh == sized(2.0).sized.mesh
+    assert sized(2.0, mechanisms=[RELAXING]).sized_config.mesh == sized(2.0).sized_config.mesh
 
 
 def test_stated_sizes_stay():
     config = config_from(SLICE)
-    assert Case(config).sized is config
+    assert Case(config).sized_config is config
 
 
 def test_an_accuracy_that_needs_too_many_elements_is_refused_by_its_own_name(monkeypatch):
     monkeypatch.setattr("softdot.checks.MOST_ELEMENTS", 100)
     with pytest.raises(InputError, match=r"mesh\.accuracy_percent = 0\.4: mesh\.contact_element_size_mm = .* elements"):
-        _ = Case(config_from({**SLICE, "mesh": {"accuracy_percent": 0.4}})).sized
+        _ = Case(config_from({**SLICE, "mesh": {"accuracy_percent": 0.4}})).sized_config
 
 
 def test_a_mesh_of_a_file_has_the_accuracy_that_it_has():

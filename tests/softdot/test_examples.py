@@ -177,7 +177,7 @@ def test_no_example_is_left_out():
 
 @for_each("path", RUNS, ids=lambda path: path.stem)
 def test_every_example_passes_the_checks_of_a_run(path):
-    _ = Case.load(path).checked
+    _ = Case.load(path).checked_design
 
 
 @for_each("name", MECHANISMS)

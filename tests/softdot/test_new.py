@@ -20,7 +20,7 @@ def test_what_is_printed_passes_the_checks_of_a_run(name, tmp_path, capfd):
     assert main(["new", "--template", name]) == 0
     path = tmp_path / "mine.toml"
     path.write_text(capfd.readouterr().out, "utf-8")
-    _ = Case.load(path).checked
+    _ = Case.load(path).checked_design
     assert main(["check", str(path), "--quiet"]) == 0
 
 

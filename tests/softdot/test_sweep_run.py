@@ -111,14 +111,14 @@ def test_the_peak_is_the_largest_magnitude_with_its_sign(stages, out):
 
 def test_a_point_that_fails_is_a_row_with_its_reason(presses, stages, tmp_path, out):
     presses.failures = {0.2: "Newton's method found no state\nat 0.1 mm", 0.3: RuntimeError("a bug")}
-    check = stages.checked
+    check = stages.checked_design
 
     def refuse_deep(case, *_):
         if case.config.press.indentation_mm > 0.35:
             raise InputError("press.indentation_mm = 0.4: too deep")
         return check(case)
 
-    stages.checked = refuse_deep
+    stages.checked_design = refuse_deep
     assert sweep(tmp_path, out, depths(0.1, 0.2, 0.3, 0.4)) == 0
     assert [(row["status"], row["reason"]) for row in rows(out)] == [
         ("solved", None),

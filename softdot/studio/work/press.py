@@ -79,7 +79,7 @@ def _view(pressed: Pressed) -> dict[str, Any] | None:
 
 
 def _pressed(case: Case, progress: "TaskProgress", quality: str) -> dict[str, Any]:
-    _ = case.checked
+    _ = case.checked_design
     pressed = _pressed_with_progress(case, progress)
     result = pressed.result
     numbers = {"mesh": mesh_part(case.mesh_quality, result.unknowns), **press_part(case.model, result, pressed.course)}
