@@ -6,5 +6,5 @@ import numpy as np
 
 @nb.vectorize(cache=True)  # type: ignore[no-untyped-call]
 def mean_decay(a):  # type: ignore[no-untyped-def]
-    """(1 - exp(-a)) / a, the mean of exp(-s) for s from 0 to a >= 0."""
+    """Mean of exp(-s) for s from 0 to a >= 0, which is (1 - exp(-a)) / a."""
     return -np.expm1(-a) / a if a > 0.0 else 1.0

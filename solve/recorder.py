@@ -79,7 +79,7 @@ class Recorder:
         self.report()
 
     def memory(self) -> list[Any]:
-        """All that was recorded, to be restored later."""
+        """Everything that was recorded, to be restored later."""
         return [self.records, self.steps, self._rest_charge]
 
     def restore(self, memory: list[Any]) -> None:
@@ -194,7 +194,7 @@ class Recorder:
         return -float(self.system.dot_force(trial)[2]) if rig is None else rig.drive_force(trial)
 
     def trace(self, press: Press) -> Trace:
-        """All that was recorded, with what the physics adds."""
+        """Trace of everything that was recorded, with what the physics adds."""
         trace = self._trace()
         motion = Motion(
             1e3 * trace.indentation_m,
@@ -209,7 +209,7 @@ class Recorder:
         )
 
     def _trace(self) -> Trace:
-        """All that was recorded, without what the physics adds."""
+        """Trace of everything that was recorded, without what the physics adds."""
         return Trace(
             time_s=np.array([r.time_s for r in self.records]),
             indentation_m=np.array([r.indentation_m for r in self.records]),

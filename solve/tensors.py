@@ -31,20 +31,20 @@ def inverse(c, out):  # type: ignore[no-untyped-def]
 
 
 def to_voigt(tensor: Floats, shear: float = 1.0) -> Floats:
-    """(..., 3, 3) -> (..., 6); shear = 2 for strains."""
+    """Six numbers (..., 6) of symmetric tensors (..., 3, 3); shear = 2 for strains."""
     scale = np.array([1.0, 1.0, 1.0, shear, shear, shear])
     vector: Floats = tensor[..., I_OF, J_OF] * scale
     return vector
 
 
 def from_voigt(vector: Floats, shear: float = 1.0) -> Floats:
-    """(..., 6) -> (..., 3, 3); shear = 2 for strains."""
+    """Symmetric tensors (..., 3, 3) of six numbers (..., 6); shear = 2 for strains."""
     scale = np.array([1.0, 1.0, 1.0, shear, shear, shear])
     tensor: Floats = (vector / scale)[..., NUMBER_OF]
     return tensor
 
 
 def strain_rotation(rotation: Floats) -> Floats:
-    """(6, 6) matrix T with strain' = T strain for axes turned by rotation (3, 3), e'_i = R_ij e_j."""
+    """Matrix T (6, 6) with strain' = T strain for axes turned by rotation (3, 3), e'_i = R_ij e_j."""
     columns = [to_voigt(rotation @ from_voigt(unit, 2.0) @ rotation.T, 2.0) for unit in np.eye(6)]
     return np.stack(columns, axis=1)

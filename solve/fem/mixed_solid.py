@@ -23,7 +23,9 @@ from solve.tensors import I_OF, J_OF, inverse
 
 @piece(MATH)
 def _add_pressure_part(ci, pj, h, s, cc):  # type: ignore[no-untyped-def]
-    """h = C^-1 as six numbers; add p J C^-1 to S and p J (C^-1 x C^-1 - 2 C^-1 (.) C^-1) to CC; fill CC below."""
+    """Write C^-1 as six numbers into h; add p J C^-1 to S and p J (C^-1 x C^-1 - 2 C^-1 (.) C^-1) to CC; fill
+    CC below.
+    """
     for v in range(6):
         h[v] = ci[I_OF[v], J_OF[v]]
     for v in range(6):

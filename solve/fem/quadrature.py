@@ -8,7 +8,7 @@ from foundation.arrays import Floats
 
 
 def _orbit(*barycentric: float) -> Floats:
-    """All distinct permutations of a barycentric point, shape (k, len)."""
+    """Points (k, len) of all distinct permutations of a barycentric point."""
     return np.array(sorted(set(permutations(barycentric))))
 
 

@@ -15,7 +15,7 @@ COLUMNS = 32  # 30 filled up to whole registers of eight
 
 @piece(MATH)
 def transpose_gradients(grad, g):  # type: ignore[no-untyped-def]
-    """(10, 3) into (3, 10)."""
+    """Write gradients (10, 3) transposed into g (3, 10)."""
     for a in range(10):
         for i in range(3):
             g[i, a] = grad[a, i]
@@ -23,7 +23,7 @@ def transpose_gradients(grad, g):  # type: ignore[no-untyped-def]
 
 @piece(MATH)
 def strain_rows(f, g, b):  # type: ignore[no-untyped-def]
-    """B (6, COLUMNS) from F (3, 3) and g (3, 10); columns beyond 30 are left as they are."""
+    """Write B (6, COLUMNS) from F (3, 3) and g (3, 10); columns beyond 30 are left as they are."""
     for k in range(3):
         for v in range(3):
             x = f[k, v]
@@ -37,7 +37,7 @@ def strain_rows(f, g, b):  # type: ignore[no-untyped-def]
 
 @piece(MATH)
 def _weighted_sum(x, b, j):  # type: ignore[no-untyped-def]
-    """sum_v x_v b_v,j."""
+    """Sum of x_v b_v,j over the six v."""
     return x[0] * b[0, j] + x[1] * b[1, j] + x[2] * b[2, j] + x[3] * b[3, j] + x[4] * b[4, j] + x[5] * b[5, j]
 
 
@@ -50,7 +50,9 @@ def add_weighted_rows(x, b, total):  # type: ignore[no-untyped-def]
 
 @piece(MATH)
 def first_tangent_rows(f, g, s, cc, b, cb, t, row):  # type: ignore[no-untyped-def]
-    """Rows row to row + 3 of T of one point, for weighted S (6,) and CC (6, 6); cb (6, COLUMNS + 8) is scratch."""
+    """Write rows row to row + 3 of T of one point, for weighted S (6,) and CC (6, 6); cb (6, COLUMNS + 8) is
+    scratch.
+    """
     for v in range(6):
         for j in range(COLUMNS):
             cb[v, j] = _weighted_sum(cc[v], b, j)
@@ -60,7 +62,7 @@ def first_tangent_rows(f, g, s, cc, b, cb, t, row):  # type: ignore[no-untyped-d
 
 @piece(MATH)
 def _fold(f, g, s, cb, t, row, i, width):  # type: ignore[no-untyped-def]
-    """T of direction i from the columns of directions k >= i."""
+    """Write T of direction i from the columns of directions k >= i."""
     x, y, z = f[i, 0], f[i, 1], f[i, 2]
     for d in range(3):
         v0, v1, v2 = NUMBER_OF[0, d], NUMBER_OF[1, d], NUMBER_OF[2, d]
@@ -80,7 +82,7 @@ def displacement_stiffness(g, t, k, ke):  # type: ignore[no-untyped-def]
 
 @piece(MATH)
 def _product(g, t, width, k):  # type: ignore[no-untyped-def]
-    """k (10, width) = g^t t, two rows of k and three of t at a time: they then stay in registers."""
+    """Write g^t t into k (10, width), two rows of k and three of t at a time: they then stay in registers."""
     for a in range(0, 10, 2):
         for j in range(width):
             k[a, j] = 0.0
@@ -96,7 +98,7 @@ def _product(g, t, width, k):  # type: ignore[no-untyped-def]
 
 @piece(MATH)
 def _store(k, i, ke):  # type: ignore[no-untyped-def]
-    """Blocks (i, m >= i), k (10, 10 (m - i) + b), into the upper triangle of ke."""
+    """Write the blocks (i, m >= i), k (10, 10 (m - i) + b), into the upper triangle of ke."""
     for a in range(10):
         for b in range(a, 10):
             ke[3 * a + i, 3 * b + i] = k[a, b]

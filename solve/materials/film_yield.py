@@ -48,8 +48,9 @@ class Projection(NamedTuple):
 
 @dataclass(frozen=True)
 class YieldLaw:
-    """stiffness : (6, 6) positive definite, strains with engineering shears; yield_stress > 0, inf for none;
-    hardening : H >= 0, the slope of the yield stress over kappa; all in one unit of stress. ValueError otherwise.
+    """Von Mises yield with linear isotropic hardening. stiffness : (6, 6) positive definite, strains with engineering
+    shears; yield_stress > 0, inf for none; hardening : H >= 0, the slope of the yield stress over kappa; all in one
+    unit of stress. ValueError otherwise.
     """
 
     stiffness: Floats

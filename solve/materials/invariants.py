@@ -19,7 +19,7 @@ NO_POWER: Power = (0.0, 1.0)
 
 @piece()
 def _power(x, b, n):  # type: ignore[no-untyped-def]
-    """(1 + b x / n)^(n - 1), and its slope in x; exp(b x) for an infinite n."""
+    """Power (1 + b x / n)^(n - 1), and its slope in x; exp(b x) for an infinite n."""
     if np.isinf(n):
         value = np.exp(b * x)
         return value, b * value

@@ -20,7 +20,9 @@ ROUNDING = 1e-14  # energies below this part of the stiffness are rounding: stra
 
 @dataclass(frozen=True)
 class Softening(StatedLaw):
-    """loss : 1/r, the largest relative loss of stress; energy : m, in the unit of stress; beta : without unit."""
+    """Stress softening after Ogden and Roxburgh. loss : 1/r, the largest relative loss of stress; energy : m, in the
+    unit of stress; beta : without unit.
+    """
 
     loss: float
     energy: float = 0.0
@@ -61,7 +63,9 @@ class Softening(StatedLaw):
         return 0.0
 
     def _factor(self, energy: Floats, largest: Floats, rounding: Floats) -> tuple[Floats, Floats]:
-        """eta and d eta/dW, (n,) each. rounding : the least energy that differs from that of the undeformed point."""
+        """Factors eta and d eta/dW, (n,) each. rounding : the least energy that differs from that of the undeformed
+        point.
+        """
         below = energy < largest
         width = np.maximum(self.energy + self.beta * largest, rounding)
         z = np.where(below, (largest - energy) / width, 0.0)

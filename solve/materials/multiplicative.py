@@ -127,7 +127,7 @@ def _add_branches(start, stop, cauchy_green, before, flowed, steps, moduli, stre
 
 @piece()
 def _add_branch(c, ci, j23, g, h, modulus, stress, tangent):  # type: ignore[no-untyped-def]
-    """dG/dC^ is H = h (G x G / 3 - G (.) G); x is H : C."""
+    """Add the stress and the tangent of one branch. dG/dC^ is H = h (G x G / 3 - G (.) G); x is H : C."""
     gcg = g @ c @ g
     s = _double_contraction(c, g)
     x = h * (s / 3.0 * g - gcg)

@@ -89,7 +89,7 @@ class Linear(MaterialTable):
 
     @property
     def law(self) -> laws.MediumLaw:
-        """Its law, in MPa."""
+        """Law of the material, in MPa."""
         bulk = laws.bulk_modulus(self.shear_modulus_MPa, self.poisson_ratio)
         return laws.LinearLaw(self.shear_modulus_MPa, bulk)
 
@@ -114,7 +114,7 @@ class MooneyRivlin(MaterialTable):
 
     @property
     def law(self) -> laws.MediumLaw:
-        """Its law, in MPa."""
+        """Law of the material, in MPa."""
         return laws.InvariantLaw(
             self.c10_MPa, self.c01_MPa, 0.0, 0.0, laws.bulk_modulus(self.shear_modulus_MPa, self.poisson_ratio)
         )
@@ -136,7 +136,7 @@ class Yeoh(MaterialTable):
 
     @property
     def law(self) -> laws.MediumLaw:
-        """Its law, in MPa."""
+        """Law of the material, in MPa."""
         return laws.InvariantLaw(
             self.c10_MPa, 0.0, self.c20_MPa, self.c30_MPa, laws.bulk_modulus(self.shear_modulus_MPa, self.poisson_ratio)
         )
@@ -158,7 +158,7 @@ class Knowles(MaterialTable):
 
     @property
     def law(self) -> laws.MediumLaw:
-        """Its law, in MPa."""
+        """Law of the material, in MPa."""
         power = self.b, np.inf if self.n is None else self.n
         return laws.KnowlesLaw(self.c10_MPa, power, laws.bulk_modulus(self.shear_modulus_MPa, self.poisson_ratio))
 
@@ -184,7 +184,7 @@ class Ogden(MaterialTable):
 
     @property
     def law(self) -> laws.MediumLaw:
-        """Its law, in MPa."""
+        """Law of the material, in MPa."""
         bulk = laws.bulk_modulus(self.shear_modulus_MPa, self.poisson_ratio)
         return laws.OgdenLaw(self.mu_MPa, self.alpha, bulk)
 
@@ -223,7 +223,7 @@ class Hyperfoam(MaterialTable):
 
     @property
     def law(self) -> laws.MediumLaw:
-        """Its law, in MPa."""
+        """Law of the material, in MPa."""
         beta = tuple(nu / (1.0 - 2.0 * nu) for nu in self.poisson_ratio)
         return HyperfoamLaw(self.mu_MPa, self.alpha, beta)
 
@@ -270,7 +270,7 @@ class PiezoelectricFilm(MaterialTable):
 
     @property
     def stiffness_MPa(self) -> Floats:
-        """(6, 6) stiffness in its own axes: isotropic, or with another modulus across the draw direction."""
+        """Stiffness (6, 6) in the film's own axes: isotropic, or with another modulus across the draw direction."""
         e1, nu = self.youngs_modulus_MPa, self.poisson_ratio
         e2 = self.youngs_modulus_2_MPa or e1
         compliance = np.zeros((6, 6))
@@ -286,7 +286,7 @@ class PiezoelectricFilm(MaterialTable):
 
     @property
     def coupling_C_per_N(self) -> Floats:
-        """(6,) d31, d32, d33 and no shear, in its own axes."""
+        """Piezoelectric constants (6,) d31, d32, d33 and no shear, in the film's own axes."""
         return 1e-12 * np.array([self.d31_pC_per_N, self.d32_pC_per_N, self.d33_pC_per_N, 0.0, 0.0, 0.0])
 
     @property

@@ -28,7 +28,9 @@ def branch_stress(branch, fade, gain, change):  # type: ignore[no-untyped-def]
 
 @dataclass(frozen=True)
 class Prony(StatedLaw):
-    """relative_moduli : g_i, sum below 1; relaxation_times : tau_i in s. No terms: elastic."""
+    """Relaxation as a Prony series. relative_moduli : g_i, sum below 1; relaxation_times : tau_i in s. No terms:
+    elastic.
+    """
 
     relative_moduli: tuple[float, ...]
     relaxation_times: tuple[float, ...]

@@ -38,8 +38,9 @@ INTERPOLATION_SAFETY = 2.0
 
 @dataclass(frozen=True)
 class PressCourse:
-    """time_s (n,); indentation_m (n,) of the displacement sensor; reaction_force_N (n,) of the force sensor; charge_C
-    (n, e) at short circuit and voltage_V (n, e) at open circuit, one column for each electrode.
+    """Course of a press in time. time_s (n,); indentation_m (n,) of the displacement sensor; reaction_force_N (n,) of
+    the force sensor; charge_C (n, e) at short circuit and voltage_V (n, e) at open circuit, one column for each
+    electrode.
 
     together_V : (n,) behind one amplifier for all electrodes; channels_V : (n, e) each behind its own; both None
     without an amplifier. solved : (s,) places of the reported steps. readout_error_percent : how far what is read, at

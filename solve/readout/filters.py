@@ -26,7 +26,8 @@ SAME_STEP = 1e-9  # relative difference of two steps that count as one
 
 @dataclass(frozen=True)
 class Filter:
-    """corner_Hz : half the power is left there. quality : of a low-pass of order 2 only, None for Butterworth's.
+    """Analog filter behind an amplifier's input. corner_Hz : half the power is left there. quality : of a low-pass of
+    order 2 only, None for Butterworth's.
 
     delay_s : dead time.
     """
@@ -118,7 +119,9 @@ def _unit_gain(own: Filter) -> float:
 
 @nb.njit(cache=True)
 def _recur(number: Ints, a: Floats, first: Floats, second: Floats, c: Floats, d: float, given: Floats) -> Floats:
-    """x <- A x + first v_n + second v_(n+1) from x = 0, with the A and gains of each step; y = c x + d v."""
+    """Answer (n,) of x <- A x + first v_n + second v_(n+1) from x = 0, with the A and gains of each step; y = c x + d
+    v.
+    """
     order = len(c)
     state, new = np.zeros(order), np.zeros(order)
     answer = np.empty(len(given))

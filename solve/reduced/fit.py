@@ -25,7 +25,8 @@ MODES = 3  # of each layer at most: more would be directions that the samples do
 
 @dataclass(frozen=True)
 class ResponseTable:
-    """table (cells + 1, f, o) and touch (f,) as solve.reduced.time_stepping.follow takes them.
+    """Table of a reduced model. table (cells + 1, f, o) and touch (f,) as solve.reduced.time_stepping.follow takes
+    them.
 
     start (k + 1,) first amplitude of each layer; pairs (p, 2) of amplitudes; missing : largest share of a layer's
     elastic stress that its modes leave out.

@@ -25,7 +25,7 @@ class Frozen(Prony):
     layer: str = ""
 
     def start(self, points: int, components: int = 6) -> Memory:
-        """Nothing remembered."""
+        """Memory at rest, where nothing is remembered."""
         return np.zeros((points, components)), np.zeros((points, components))
 
     def update(self, elastic: StressResponse, memory: Memory, time_step: float) -> tuple[StressResponse, Memory]:
@@ -33,5 +33,5 @@ class Frozen(Prony):
         return StressResponse(elastic.stress - memory[1], elastic.tangent), (elastic.stress, memory[1])
 
     def time_error(self, memory: Memory, new: Memory, time_step: float, after_kink: bool) -> float:
-        """No time passes."""
+        """Zero: no time passes."""
         return 0.0

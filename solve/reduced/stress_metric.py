@@ -33,7 +33,7 @@ class StressMetric:
         return self.bases[layer].coordinates(self._load(self.terms[layer], field))
 
     def _load(self, term: Term, field: Floats) -> Floats:
-        """f (count,) = residual without the memory less residual with it."""
+        """Load f (count,) of a memory: the residual without it less the residual with it."""
         load = np.zeros(self.system.count + 1)  # the last entry takes what belongs to prescribed unknowns
         for memory, sign in ((np.zeros_like(field), 1.0), (field, -1.0)):
             for block in term.elements(self.trial, ((field, memory),)):
@@ -42,6 +42,7 @@ class StressMetric:
         return load[:-1]
 
     def _answer(self, load: Floats) -> Floats:
+        """Answer K^-1 f (count,) of the segment to a load."""
         if not load.any():
             return load
         answer = self.linear.solve(self.tangent, load, LINEAR_TOLERANCE, similar=self._factorised)

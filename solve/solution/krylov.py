@@ -16,7 +16,8 @@ Apply = Callable[[Floats], Floats]
 
 
 def flexible_gmres(product: Apply, approximate: Apply, rhs: Floats, tolerance: float, iterations: int) -> Floats:
-    """x (n,) with |rhs - A x| <= tolerance |rhs|, or as near as the iterations bring it; NaN where something overflows.
+    """Solution x (n,) with |rhs - A x| <= tolerance |rhs|, or as near as the iterations bring it; NaN where something
+    overflows.
 
     product : A v of a vector; approximate : about A^-1 v, which need not be linear.
     """

@@ -200,8 +200,9 @@ Measure = Callable[[Tangent, Floats, Floats, Floats], float]
 
 @dataclass(frozen=True)
 class _Goal:
-    """krylov : relative residual of one run of GMRES; refined, accepted : by the measure, what ends the refinement and
-    what will do. shift : share of the solver's. similar_refinements : with a factorisation of another tangent.
+    """Goal of a linear solution. krylov : relative residual of one run of GMRES; refined, accepted : by the measure,
+    what ends the refinement and what will do. shift : share of the solver's. similar_refinements : with a factorisation
+    of another tangent.
     """
 
     measure: Measure

@@ -99,7 +99,7 @@ class Circles:
         self._visited: dict[bytes, list[float]] = {}
 
     def share(self, status: Bools, norm: float) -> float:
-        """How much of the next step to take from an iterate with these discrete states and norm of the residual."""
+        """Share of the next step to take from an iterate with these discrete states and norm of the residual."""
         norms = self._visited.setdefault(status.tobytes(), [])
         if not any(abs(norm - other) <= SAME_RESIDUAL * norm for other in norms):
             norms.append(norm)

@@ -121,8 +121,8 @@ class _ChangedConstraints:
 
 @dataclass(frozen=True)
 class _Border:
-    """rows (m,); opened (m,), the others closed; across B^t (m, n); columns K^-1 B (n, m); inverse (m, m) of
-    B^t K^-1 B.
+    """Border of some changed constraints. rows (m,); opened (m,), the others closed; across B^t (m, n); columns K^-1 B
+    (n, m); inverse (m, m) of B^t K^-1 B.
     """
 
     rows: Ints

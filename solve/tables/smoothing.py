@@ -22,7 +22,8 @@ SMALL_CHARGE_SHARE = 0.1  # of the largest charge per force: a charge that chang
 
 @dataclass(frozen=True)
 class Smooth:
-    """logarithms : of force and of area over that of the share. per_force : each charge over the share, C per N.
+    """Smooth curves of a press over its depth. logarithms : of force and of area over that of the share. per_force :
+    each charge over the share, C per N.
 
     first : share below which the power law goes on. error : (2 + e,) one standard error of the curves, relative, of
     charges to the largest of them.

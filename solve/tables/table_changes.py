@@ -24,7 +24,7 @@ def change(base: Floats, other: Floats) -> Floats:
 
 
 class Depths:
-    """From shares (n,) of the depth to the rows of a table: one matrix."""
+    """Matrix from values at shares (n,) of the depth to those at the rows of a table."""
 
     def __init__(self, shares: tuple[float, ...]) -> None:
         knots = np.array([0.0, *shares])

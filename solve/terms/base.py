@@ -91,7 +91,7 @@ class Term(ABC):
         return 0.0
 
     def dot_force(self, trial: Trial) -> Floats:
-        """Its part (3,) of the dot's force on the meshed body."""
+        """Part (3,) of this term in the dot's force on the meshed body."""
         return np.zeros(3)
 
     def contact_traction(self, trial: Trial) -> Floats:

@@ -23,7 +23,9 @@ from solve.terms.jump import Jump, MatchedFacets, matched_facets
 
 @dataclass(frozen=True)
 class BondSprings(Term):
-    """normal, shear : traction per jump in the solver's units; inelastic : laws with memory, none if elastic."""
+    """Springs without thickness between two matched faces. normal, shear : traction per jump in the solver's units;
+    inelastic : laws with memory, none if elastic.
+    """
 
     facets: MatchedFacets
     normal: float

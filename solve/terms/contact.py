@@ -112,7 +112,9 @@ class ContactFacets(Term):
         return self.force(trial.displacement, trial.move, trial.x[self.pressure_dofs])
 
     def contact_traction(self, trial: Trial) -> Floats:
-        """t_i = int phi_i lambda n dA / int phi_i dA, with n away from the dot: sum t_i int phi_i dA is the force."""
+        """Traction (c, 3) t_i = int phi_i lambda n dA / int phi_i dA, with n away from the dot: sum t_i int phi_i dA is
+        the force.
+        """
         lam = np.einsum("qi,ki->kq", HATS, trial.x[self.pressure_dofs][self.index])
         normal = self._at_quadrature(trial.displacement, trial.move)[1]
         force = np.einsum("kq,qi,kq,kqa->kia", self.area, HATS, lam, normal)

@@ -91,6 +91,7 @@ class FilmRegion(Term):
         return np.broadcast_to(-voltage[:, None] / self.thickness, self.weight.shape)
 
     def _strain(self, displacement: Floats) -> Floats:
+        """Green-Lagrange strain (m, q, 6) at nodal displacements (n, 3), prestrain included."""
         return green_lagrange(self.gradient, displacement[self.tets]) + self.prestrain
 
     def _respond(self, trial: Trial, history: History) -> tuple[StressResponse, History]:
@@ -123,7 +124,7 @@ class FilmRegion(Term):
         return self.coverage.volume() / self.thickness
 
     def capacitance(self) -> Floats:
-        """eps A / t of the undeformed film under each electrode, shape (e,)."""
+        """Capacitance eps A / t (e,) of the undeformed film under each electrode."""
         return self.area() * self.law.permittivity / self.thickness
 
 

@@ -182,7 +182,7 @@ class FrictionalContact(Term):
         return Nodal(normal, projector, length, moved, tau, target, radius, active, slips, by_slip, by_radius)
 
     def _shift(self, slip: Floats, radius: Floats) -> tuple[Floats, Floats, Floats]:
-        """c s (c, 3), c so small that c |s| <= 1.9 b, and its derivatives by s (c, 3, 3) and b (c, 3).
+        """Shift c s (c, 3), c so small that c |s| <= 1.9 b, and its derivatives by s (c, 3, 3) and b (c, 3).
 
         A node that slips too far, tau = b s / |s|, then has |tau - c s| < b: it sticks in the next iteration instead of
         slipping back, which could go on for ever.
@@ -279,7 +279,7 @@ def _apply(a: Floats, b: Floats) -> Floats:
 
 
 def _quotient(a: Floats, b: Floats) -> Floats:
-    """a / b, zero where b is."""
+    """Quotient a / b, zero where b is."""
     shape = np.broadcast_shapes(a.shape, b.shape)
     quotient: Floats = np.divide(a, b, out=np.zeros(shape), where=np.broadcast_to(b > 0.0, shape))
     return quotient

@@ -28,7 +28,7 @@ BETA, GAMMA = 0.25 * (1.0 - ALPHA) ** 2, 0.5 - ALPHA
 
 @dataclass(frozen=True)
 class MassTerm(Term):
-    """approach_dof : unknown number; mass : solver units, above 0."""
+    """Mass that moves with the dot. approach_dof : unknown number; mass : solver units, above 0."""
 
     approach_dof: int
     mass: float
@@ -39,7 +39,7 @@ class MassTerm(Term):
         return (np.array([[self.approach_dof]]),)
 
     def start(self) -> History:
-        """Velocity, acceleration of the dot and the approach itself, (3,)."""
+        """Velocity and acceleration of the dot, and the approach itself, at rest (3,)."""
         return np.zeros(3)
 
     def _motion(self, trial: Trial, history: History) -> Floats:

@@ -23,7 +23,7 @@ Rule = tuple[Floats, Floats]  # points (q, 2) and weights (q,) on the reference 
 
 @dataclass(frozen=True)
 class Jump:
-    """At quadrature points: d (k, q, 3), opening (k, q), its derivatives by z (k, q, 9) and (k, q, 9, 9)."""
+    """Jump at quadrature points: d (k, q, 3), opening (k, q), its derivatives by z (k, q, 9) and (k, q, 9, 9)."""
 
     d: Floats
     opening: Floats
@@ -59,17 +59,19 @@ class MatchedFacets:
         return self.rows.reshape(-1, self.rows.shape[2])
 
     def residual(self, gradient: Floats) -> Floats:
-        """int gradient . dz/du, shape (k, 3n), of the derivative by z (k, q, 9) of an energy per undeformed area."""
+        """Residuals int gradient . dz/du (k, 3n) of the derivative by z (k, q, 9) of an energy per undeformed area."""
         return self.coupling(gradient[..., None])[..., 0]
 
     def coupling(self, columns: Floats) -> Floats:
-        """int (dz/du)^t columns, shape (k, 3n, c), of columns (k, q, 9, c)."""
+        """Integrals int (dz/du)^t columns (k, 3n, c) of columns (k, q, 9, c)."""
         count, width = len(self.nodes), columns.shape[-1]
         weighted = (columns * self.area[..., None, None]).reshape(count, -1, 3 * width)
         return np.asarray(np.matmul(self._stacked_rows.T, weighted).reshape(count, -1, width))
 
     def tangent(self, hessian: Floats) -> Floats:
-        """int (dz/du)^t hessian dz/du, upper triangle (k, 3n, 3n), of the second derivative by z (k, q, 9, 9)."""
+        """Integrals int (dz/du)^t hessian dz/du, upper triangle (k, 3n, 3n), of the second derivative by z
+        (k, q, 9, 9).
+        """
         ke = np.empty((*self.dofs.shape, self.dofs.shape[1]))
         integrate_tangent(hessian, self.rows, self.area, ke)
         return ke

@@ -7,7 +7,7 @@ from solve.compiled import in_threads
 
 @in_threads()
 def differentiate_opening(start, stop, z, value, slope, curvature):  # type: ignore[no-untyped-def]
-    """Opening (p,), its slope (p, 9) and curvature (p, 9, 9) by z = (d, t1, t2) (p, 9); all are overwritten."""
+    """Write the opening (p,), its slope (p, 9) and curvature (p, 9, 9) by z = (d, t1, t2) (p, 9)."""
     a, n, p = np.empty(3), np.empty(3), np.empty(3)
     by_tangents, product = np.empty((3, 6)), np.empty((3, 6))
     across, by_area = np.empty((3, 3)), np.empty((3, 3))
@@ -61,7 +61,9 @@ def differentiate_opening(start, stop, z, value, slope, curvature):  # type: ign
 
 @in_threads()
 def integrate_tangent(start, stop, hessian, rows, area, ke):  # type: ignore[no-untyped-def]
-    """ke (k, 3n, 3n), upper triangle: sum over q of area (k, q) times rows (q, 3, n) on both sides of (k, q, 9, 9)."""
+    """Write ke (k, 3n, 3n), upper triangle: the sum over q of area (k, q) times rows (q, 3, n) on both sides of
+    (k, q, 9, 9).
+    """
     count = rows.shape[2]
     half = np.empty((9, 3 * count))
     for e in range(start, stop):

@@ -18,7 +18,8 @@ from solve.terms.definition import TermDefinition
 
 @dataclass(frozen=True)
 class RigTerm(Term):
-    """approach_dof : unknown number; compliance : solver units, None where a force drives.
+    """Spring of the rig, or the force that drives. approach_dof : unknown number; compliance : solver units, None where
+    a force drives.
 
     alone : nothing but the contact resists the force, so that the dot rests where none pushes.
     """

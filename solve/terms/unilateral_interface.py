@@ -24,7 +24,9 @@ ADHESION = 1e-12  # tension, in solver units, that faces at rest may carry: roun
 
 @dataclass(frozen=True)
 class UnilateralInterface(Term):
-    """facets : (k, .) ; hats : (k, q, 6) functions phi_i; index : (k, 6) into multipliers (c,), -1 at the rim."""
+    """Two faces that may part. facets : (k, .) ; hats : (k, q, 6) functions phi_i; index : (k, 6) into multipliers
+    (c,), -1 at the rim.
+    """
 
     facets: MatchedFacets
     hats: Floats

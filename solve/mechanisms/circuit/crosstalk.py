@@ -43,7 +43,7 @@ def switch_on(model: Model, component: str, values: Crosstalk) -> Model:
 
 
 def _with(model: Model, part: ChannelPart) -> Model:
-    """In place of another one of the same kind between the same channels."""
+    """The model with a part in place of another one of the same kind between the same channels."""
     known = model.physics.channels
     others = (one for one in known if type(one) is not type(part) or one.channels != part.channels)
     return with_physics(model, channels=(*others, part))

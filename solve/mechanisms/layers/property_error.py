@@ -54,7 +54,9 @@ def switch_on(model: Model, component: str, values: PropertyError) -> Model:
 
 
 def _scaled_constants(material: Material, values: Any) -> dict[str, Any]:
-    """Every modulus times modulus_factor and, of a film, every piezoelectric constant times d31_factor."""
+    """The material with every modulus times modulus_factor and, of a film, every piezoelectric constant times
+    d31_factor.
+    """
     changes: dict[str, Any] = {}
     for name in type(material).model_fields:
         value = getattr(material, name)
