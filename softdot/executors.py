@@ -11,7 +11,8 @@ from softdot.warm_up import warm_up
 
 @contextmanager
 def executor_for(scheduler: str | None = None, workers: int | None = None) -> Iterator[Executor]:
-    """For the time of a block: the Dask cluster of a scheduler (tcp://HOST:PORT), or processes of this computer.
+    """Executor for the time of a block: the Dask cluster of a scheduler (tcp://HOST:PORT), or processes of this
+    computer.
 
     workers : processes, one per core by default; they start with the first call. InputError for a scheduler that does
     not answer and for one whose workers do not fit.

@@ -62,7 +62,7 @@ class PreparedPress:
 
     @property
     def warnings(self) -> list[str]:
-        """All warnings that need no solution. InputError for a press that cannot be solved."""
+        """Warnings that need no solution. InputError for a press that cannot be solved."""
         from softdot.checks import design_warnings
 
         return [*self.checked_design[1], *design_warnings(self.model)]

@@ -70,7 +70,7 @@ class Pressed:
 
     @property
     def failure(self) -> str | None:
-        """Where and why the press stopped short; None where it did not."""
+        """Place and reason where the press stopped short; None where it did not."""
         return self.result.failure
 
     @property

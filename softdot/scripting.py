@@ -101,7 +101,7 @@ class Verdict:
 
     @property
     def grade(self) -> str:
-        """How much the verdict says: agreement, identified, main part, kind only or unexplained."""
+        """Grade of what the verdict says: agreement, identified, main part, kind only or unexplained."""
         return str(self.content["grade"])
 
     @property

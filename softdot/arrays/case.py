@@ -105,12 +105,12 @@ class ArrayCase:
             )
 
     def press_over(self, place: SegmentPlace) -> PreparedPress:
-        """One dot alone over one segment. InputError."""
+        """Press by one dot alone over one segment. InputError."""
         x, y = self.config.dot.offset_mm
         return self._press(self.config.dot.lone(offset_mm=(place.x_mm + x, place.y_mm + y)))
 
     def press_by_cell(self) -> PreparedPress:
-        """All dots of dot.cell on one plate, dot 1 over segment r1c1, the others at the pitch of the standard.
+        """Press by all dots of dot.cell on one plate, dot 1 over segment r1c1, the others at the pitch of the standard.
 
         InputError without a cell, or where the standard states no pitch.
         """

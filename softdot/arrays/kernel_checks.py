@@ -54,7 +54,7 @@ def cells_by_chance(case: ArrayCase, each: int, seed: int = SEED) -> dict[str, C
 
 
 def every_cell(case: ArrayCase) -> dict[str, Config]:
-    """Each of the 63 cells over its segments; of those that are mirror images of each other one."""
+    """Presses by each of the 63 cells over its segments; of those that are mirror images of each other one."""
     swaps = [
         swap
         for axis, swap, fill in ((0, COLUMNS_SWAPPED, 2), (1, ROWS_SWAPPED, 3))

@@ -33,7 +33,7 @@ FINE_MM, FINE_STEPS = 0.1, 20
 
 @dataclass(frozen=True)
 class KernelDetail:
-    """How fine a kernel is.
+    """Fineness of a kernel.
 
     coarser : element sizes of its presses over the configured ones; steps : depths of each press at least; per_pitch :
     intervals of the grid from segment to segment.
@@ -188,7 +188,7 @@ class KernelGrid:
 
     @property
     def all(self) -> list[GridNode]:
-        """Every node at which a dot touches, by its two numbers."""
+        """Numbers of every node at which a dot touches."""
         columns, rows = (range(1, len(nodes) - 1) for nodes in self.nodes_mm)
         return list(product(columns, rows))
 

@@ -18,7 +18,7 @@ HERE = Path(__file__).parent
 
 
 def write_files(case: Any, found: ArrayStudy, summary: dict[str, Any], folder: Path) -> None:
-    """All but array.json; summary : what that will say."""
+    """Write all files but array.json; summary : its content."""
     from export.cad import write_array_cad
     from export.vtu import write_results
     from softdot.arrays.kernel_errors import with_about
@@ -58,7 +58,7 @@ def _write_csv(found: ArrayStudy, path: Path) -> None:
 
 
 def _draw(found: ArrayStudy, folder: Path) -> list[tuple[str, str, str]]:
-    """All pictures; of each its file, title and caption, in the order of the report."""
+    """Draw all pictures; file, title and caption of each, in the order of the report."""
     import numpy as np
 
     from export.array.maps import draw_growth, draw_maps, draw_matrix

@@ -28,8 +28,9 @@ ROLES = ("inner", "edge", "corner")
 
 @dataclass(frozen=True)
 class Likeness:
-    """How near a lone segment comes: errors of force, or of depth where a force is prescribed, and of voltage at full
-    load, and the root of the mean square of both over the press, each relative to its largest value in the array.
+    """Nearness of a lone segment to one of an array: errors of force, or of depth where a force is prescribed, and of
+    voltage at full load, and the root of the mean square of both over the press, each relative to its largest value in
+    the array.
     """
 
     force_percent: float | None
@@ -62,7 +63,7 @@ def role(layout: ArrayLayout, place: SegmentPlace) -> str:
 
 
 def representatives(layout: ArrayLayout) -> dict[str, int]:
-    """For each role that the array has, the number of its segment nearest to the middle."""
+    """Number of the segment nearest to the middle for each role that the array has."""
     found: dict[str, int] = {}
     for number in np.argsort([np.hypot(place.x_mm, place.y_mm) for place in layout.places], kind="stable"):
         found.setdefault(role(layout, layout.places[number]), int(number))

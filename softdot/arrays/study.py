@@ -24,7 +24,7 @@ Part = Literal["variants", "kernel"]
 
 @dataclass(frozen=True)
 class CellPress:
-    """All dots of a cell on one plate, beside the sum of the presses of each of them alone.
+    """Press by all dots of a cell on one plate, beside the sum of the presses of each of them alone.
 
     superposed_pC : (s, n) sum of the charges of single dots at the same depth; NaN where one was not pressed so deep.
     """

@@ -222,7 +222,7 @@ def without_round_off(value: Any) -> Any:
 
 
 def _numbers_with_paths(value: Any, path: tuple[str | int, ...]) -> Iterator[tuple[tuple[str | int, ...], float]]:
-    """Every number of the tables with its path."""
+    """Numbers of the tables with their paths."""
     if isinstance(value, dict):
         for key, item in value.items():
             yield from _numbers_with_paths(item, (*path, str(key)))

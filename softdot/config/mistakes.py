@@ -28,7 +28,7 @@ Way = tuple[str | int, ...]
 def mistakes(
     tables: Mapping[str, Any], check: Callable[[Mapping[str, Any]], Checked]
 ) -> tuple[list[str], Checked | None]:
-    """Every sentence with which check refuses the tables, at most MOST_MISTAKES, and its result when there is none."""
+    """Sentences with which check refuses the tables, at most MOST_MISTAKES, and its result when there is none."""
     found: list[str] = []
     rest = _Rest(tables)
     while len(found) < MOST_MISTAKES:

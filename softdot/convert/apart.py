@@ -198,7 +198,7 @@ def _log_arrays(
 
 
 def _alike(time_s: Floats, other_s: Floats) -> bool:
-    """Within a tenth of a step, or what is left of digits at late times."""
+    """Whether steps are equal within a tenth of one, or within the digits that are left at late times."""
     step = float(np.median(np.diff(time_s))) if len(time_s) > 1 else 1.0
     return bool((np.abs(time_s - other_s) <= 0.1 * step + 4.0 * np.spacing(np.abs(time_s).max())).all())
 

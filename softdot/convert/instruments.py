@@ -44,7 +44,8 @@ class InstrumentLog:
 
 
 def read_oscilloscope(file: Path | str) -> dict[str, Floats]:
-    """time_s and the channels by the names of the instrument, (t,) each in s, V, N, mm or degrees C.
+    """Columns (t,) of an oscilloscope's file: time_s and the channels by the instrument's names, in s, V, N, mm or
+    degrees C.
 
     NaN where a cell is empty. InputError for a file that cannot be read, a header or a unit that is not known, two
     columns of one name and a cell that is no number.

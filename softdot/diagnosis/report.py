@@ -95,7 +95,7 @@ def _parameter_rows(best: FittedModel) -> Iterator[list[str]]:
 
 
 def _explanation_rows(findings: Findings) -> list[tuple[bool, str, FittedModel]]:
-    """For each explanation whether it is the named one, its words, and the model."""
+    """Rows of the explanations: whether each is the named one, its words, and the model."""
     return [(model is findings.best, model_words(model), model) for model in findings.models]
 
 

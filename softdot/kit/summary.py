@@ -32,7 +32,7 @@ def press_words(config: Config) -> str:
 
 
 def summary_of(contents: Contents, state: str, failure: str | None) -> dict[str, Any]:
-    """Every number of the kit with its unit in its name, in plain data.
+    """Numbers of the kit with their units in their names, in plain data.
 
     state : of the tolerance budget, "unfinished", "complete" or "failed". failure : why it failed, else None.
     """

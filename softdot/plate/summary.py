@@ -12,7 +12,7 @@ from softdot.version import installed_version
 
 
 def summary_of(built: BuiltPlate, answers: Sequence[Printability], product: Product) -> dict[str, Any]:
-    """Every number of the plate with its unit in its name, in plain data."""
+    """Numbers of the plate with their units in their names, in plain data."""
     plate, sizes = built.plate, built.sizes
     words: dict[str, Any] = plain(
         {

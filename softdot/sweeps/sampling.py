@@ -132,7 +132,7 @@ def sample_points(sweep: Sweep) -> list[tuple[Any, ...]]:
 
 
 def _grid(values: list[list[Any]]) -> list[tuple[Any, ...]]:
-    """All combinations of the values of the axes. InputError for too many."""
+    """Combinations of all values of the axes. InputError for too many."""
     count = math.prod(map(len, values))
     if count > MOST_POINTS:
         sizes = " × ".join(str(len(one)) for one in values)

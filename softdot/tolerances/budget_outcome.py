@@ -10,7 +10,7 @@ from solve.solution.linear import LinearSolveError
 
 @dataclass(frozen=True)
 class BudgetOutcome:
-    """How the calculation of a tolerance budget ended.
+    """Outcome of the calculation of a tolerance budget.
 
     state : "unfinished" while it runs and after an interrupt. budget : as in kit.json. note : for the build sheet,
     where there is no budget. failure : for kit.json and the command line, in the solver's own words.

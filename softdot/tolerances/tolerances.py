@@ -41,7 +41,7 @@ class Tolerance:
 
 
 def tolerances(config: Config) -> list[Tolerance]:
-    """All quantities that change the press to first order."""
+    """Tolerances of all quantities that change the press to first order."""
     return [
         *_thicknesses(config),
         *_moduli(config, _cast_materials(config)),

@@ -17,7 +17,7 @@ class ByAnotherCode:
 
 @cache
 def references() -> dict[str, ByAnotherCode]:
-    """All results of other codes by name, from other_codes.toml."""
+    """Results of other codes by name, from other_codes.toml."""
     tables = tomllib.loads(files(__package__).joinpath("other_codes.toml").read_text("utf-8"))
     return {name: ByAnotherCode(**table) for name, table in tables.items()}
 

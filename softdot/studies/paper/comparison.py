@@ -39,7 +39,7 @@ def numbers_table(sections: Sequence[Section], kinds: Sequence[str], name: str, 
 
 
 def claims_table(sections: Sequence[Section]) -> PaperTable:
-    """Every statement that was tested."""
+    """Table of every statement that was tested."""
     return PaperTable(
         "claims",
         "Statements of the paper, put to the test",

@@ -32,7 +32,7 @@ TERMS: Mapping[str, Name] = {
 
 @dataclass(frozen=True)
 class Opinion:
-    """named : None where it names nothing. after : held-out error over that of the noise."""
+    """Opinion of a rival. named : None where it names nothing. after : held-out error over that of the noise."""
 
     detected: bool
     named: Name | None

@@ -26,7 +26,7 @@ class Sealed:
 
 
 def seal(truth: Mapping[str, Any]) -> Sealed:
-    """With a new salt of 256 bits."""
+    """Seal a truth with a new salt of 256 bits."""
     return Sealed(truth, secrets.token_hex(32))
 
 

@@ -28,7 +28,7 @@ def allowed_roots(folder: Path, cache: Path) -> tuple[Path, ...]:
 
 
 def watch(folder: Path, cache: Path) -> None:
-    """From now on PermissionError for everything else. There is no way back."""
+    """Watch this process: from now on everything else is a PermissionError. There is no way back."""
     roots = allowed_roots(folder, cache)
     program = Path(__file__).resolve().parents[3]
     open_to_list = {program, *program.parents}

@@ -64,7 +64,8 @@ def _heard(ended: "subprocess.CompletedProcess[str]", folder: Path, seconds: flo
 
 
 def environment(folder: Path, cache: Path) -> dict[str, str]:
-    """No variable of the generator gets in: no seed, no folder of recordings, no cache of its presses.
+    """Environment of a diagnosis, into which no variable of the generator gets: no seed, no folder of recordings, no
+    cache of its presses.
 
     Kernels that are not kept beside the source are compiled once for the cache of the diagnoses.
     """

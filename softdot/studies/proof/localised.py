@@ -43,7 +43,7 @@ def _fit_selected(inputs: Floats, target: Floats) -> tuple[Floats, Floats]:
 
 
 def _phases(bench: Bench, run: Signals) -> list[Floats]:
-    """Where the dot is clear, goes down, is held and goes up, each (t,) of 0 and 1."""
+    """Phases where the dot is clear, goes down, is held and goes up, each (t,) of 0 and 1."""
     depth, rate = features(bench, run)[:, :2].T
     still, clear = np.abs(rate) < STILL * np.abs(rate).max(), depth < STILL
     parts = (still & clear, ~still & (rate > 0.0), still & ~clear, ~still & (rate < 0.0))

@@ -58,7 +58,7 @@ def recall_record(place: Path, case: Case, program: str) -> dict[str, Any] | Non
 
 
 def records(place: Path) -> Iterator[dict[str, Any]]:
-    """All that are there, in order; a damaged one of an earlier proof is left out with a warning."""
+    """Records that are there, in order; a damaged one of an earlier proof is left out with a warning."""
     for path in sorted((place / CASES).glob("case-*.json")):
         record = read_checked(path, "is left out of the table")
         if record is not None:

@@ -34,7 +34,7 @@ def share(count: int, of: int) -> dict[str, Any]:
 
 
 def tally(scores: Sequence[Score]) -> dict[str, Any]:
-    """Every rate of the proof."""
+    """Rates of the proof."""
     of = {kind: [s for s in scores if s.kind == kind] for kind in (NONE, SINGLE, PAIR, LEFT_OUT, OUTSIDE, AMBIGUOUS)}
     clear = [s for s in of[SINGLE] if s.size >= CLEAR]
     flawed = [s for s in of[SINGLE] if s.flaws]

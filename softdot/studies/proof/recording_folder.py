@@ -17,7 +17,7 @@ def files(bench: Bench, runs: Sequence[Signals]) -> Mapping[str, str]:
 
 
 def rig_text(bench: Bench) -> str:
-    """rig.toml of a bench."""
+    """Text of rig.toml of a bench."""
     lines = ['format = "softdot-recording/1"', "", *_segment(bench), *_dot(bench), *_amplifier(bench), *_mesh(bench)]
     for number, run in enumerate(bench.runs, start=1):
         lines += ["[[runs]]", f'file = "press-{number:02d}.csv"', f'label = "{run.label}"', 'drive = "displacement_mm"']

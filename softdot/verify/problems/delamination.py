@@ -24,7 +24,9 @@ LOAD = 1e-6
 
 
 def split_beam(crack: float) -> tuple[ElasticBody, UnilateralInterface, Floats]:
-    """Both arms, the patch at z = h and 0 <= x < crack where they are apart, and prescribed displacements (n, 3)."""
+    """Beam of two arms, the patch at z = h and 0 <= x < crack where they are apart, and prescribed displacements
+    (n, 3).
+    """
     z = np.linspace(0.0, 2.0 * DEPTH, 5)
     shape = grid((np.linspace(0.0, LENGTH, 41), [0.0, WIDTH], z))
     points, tets = shape.points, shape.tets.copy()

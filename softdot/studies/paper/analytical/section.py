@@ -34,7 +34,7 @@ def section(progress: Progress, folder: Path, _executor: Executor) -> Section:
 
 
 def numbers() -> dict[str, object]:
-    """Everything calculated, for paper.json."""
+    """Calculated values for paper.json."""
     return {
         "table3": formula_values("table3"),
         "table4": formula_values("table4"),

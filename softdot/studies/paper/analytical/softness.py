@@ -9,12 +9,12 @@ MUCH = 10.0
 
 
 def index_of_thickness(h1_m: float, h2_m: float) -> float:
-    """f = h1 / h2, Eq. (3)."""
+    """Ratio of the thicknesses f = h1 / h2, Eq. (3)."""
     return h1_m / h2_m
 
 
 def index_of_modulus(e1_Pa: float, e2_Pa: float) -> float:
-    """e = E1 / E2, Eq. (4)."""
+    """Ratio of the moduli e = E1 / E2, Eq. (4)."""
     return e1_Pa / e2_Pa
 
 
@@ -37,7 +37,7 @@ def shares(softness1: float, softness2: float) -> tuple[float, float]:
 def deflections_m(
     u2_m: float, softness1: float, softness2: float, alpha1: float = 1.0, alpha2: float = 1.0
 ) -> tuple[float, float]:
-    """delta_1 and delta_2, Eq. (7). With alpha1 = alpha2 = 1 they are those of two springs in series."""
+    """Deflections delta_1 and delta_2, Eq. (7). With alpha1 = alpha2 = 1 they are those of two springs in series."""
     share_a, share_b = shares(softness1, softness2)
     return u2_m * alpha1 * share_a, u2_m * alpha2 * share_b
 

@@ -24,7 +24,7 @@ PREDICTS = 0.8
 
 
 def claims(study: Beyond) -> list[Claim]:
-    """All of them."""
+    """Claims of the study beyond the paper."""
     return [
         _papers(study.ranking, "S₂/S₁", "free", "The ratio S₂/S₁ governs the free output"),
         _papers(study.ranking, "S₁b", "clamped", "The bending softness S₁b governs the clamped output"),

@@ -35,7 +35,7 @@ class Curve:
 
     @property
     def presses(self) -> list[DesignPress]:
-        """All, from stiffness 0 to infinity."""
+        """Presses from stiffness 0 to infinity."""
         return [self.free, *self.between, self.clamped]
 
     def voltage_at_V(self, stiffness: float) -> float:

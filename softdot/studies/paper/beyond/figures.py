@@ -39,7 +39,7 @@ def draw_curves(curves: Mapping[str, Curve], folder: Path) -> Path:
 
 
 def draw_correlations(ranking: Ranking, folder: Path) -> Path:
-    """How well each parameter puts the held-out designs in order."""
+    """Draw how well each parameter puts the held-out designs in order."""
     figure, panels = new_figure(2, height_in=4.2)
     for panel, sample in zip(panels, ranking.samples, strict=True):
         found = {side: correlations(ranking, sample, side) for side in BOUNDARIES}

@@ -73,7 +73,7 @@ def search(progress: Progress, executor: Executor, constants: dict[str, float], 
 
 
 def limits_of(papers: DesignTrial) -> Limits:
-    """Not more than the paper's final design, with the margin for the mesh, and never yield."""
+    """Limits of a search: not more than the paper's final design, with the margin for the mesh, and never yield."""
     stress = min(papers.film_stress_MPa, film().yield_stress_MPa or np.inf)
     return Limits(FORCE_MARGIN * papers.force_N, STRESS_MARGIN * stress)
 

@@ -182,7 +182,7 @@ def _ranges() -> str:
 
 
 def _uncertainty(study: Beyond) -> str:
-    """How sure the improvement is when segments are made."""
+    """Paragraph on how sure the improvement is when segments are made."""
     best, papers = (made_worse_V(study.search.surrogate, design) for design in (_best(study).design, PAPERS))
     low, high, papers_low, papers_high = (
         float(np.quantile(values, level)) for values in (best, papers) for level in (0.05, 0.95)
@@ -201,7 +201,7 @@ def _best(study: Beyond) -> DesignTrial:
 
 
 def numbers(study: Beyond) -> dict[str, object]:
-    """Everything solved, for paper.json."""
+    """Solved values for paper.json."""
     ranking, search = study.ranking, study.search
     return {
         "sides": {

@@ -53,7 +53,7 @@ def designs(named: Mapping[str, Design]) -> PaperTable:
 
 
 def final(compared: Mapping[str, Sequence[DesignTrial]], names: Sequence[str]) -> PaperTable:
-    """Every press of the comparison."""
+    """Table of every press of the comparison."""
     rows: list[list[Cell]] = []
     for model in MODELS:
         for name, trial in zip(names, compared[model], strict=True):

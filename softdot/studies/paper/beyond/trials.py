@@ -25,7 +25,7 @@ class DesignPress:
     """Largest principal stress of the film, a mean over an element of the mesh."""
 
     def voltage_behind_V(self, cable_pF: float) -> float:
-        """With a cable and an amplifier of this capacitance beside the film, which lose no charge."""
+        """Voltage with a cable and an amplifier of this capacitance beside the film, which lose no charge."""
         return self.charge_pC / (self.capacitance_pF + cable_pF)
 
 

@@ -35,7 +35,7 @@ class Rest:
 
 
 def rest(solved: Solved) -> Rest:
-    """Everything but R and T as assumed."""
+    """Inputs as assumed, without R and T."""
     values = assumed_inputs()
     real, read_mm = solved.curve(FOAM, values), solved.case.depth_mm
     ideal = float(solved.curve(SIMULATED, values).voltage_at(read_mm))
@@ -76,7 +76,7 @@ def curve(solved: Solved, p: float, times_s: Sequence[float] = TIMES_S) -> list[
 
 
 def grid(solved: Solved, resistances_MOhm: Floats, times_s: Floats) -> Floats:
-    """p (t, r) over press times (t,) and resistances (r,)."""
+    """Calibration factor p (t, r) over press times (t,) and resistances (r,)."""
     found = rest(solved)
     return np.array([[found.p(float(r), float(t)) for r in resistances_MOhm] for t in times_s])
 

@@ -39,7 +39,7 @@ class Factor:
 
 
 def factor(solved: Solved, values: Values) -> Factor:
-    """p of a case at given inputs."""
+    """Calibration factor p of a case at given inputs."""
     depth = solved.case.depth_mm
     real = solved.curve(FOAM, values)
     reached = dot_depth(real, depth, values)

@@ -61,7 +61,7 @@ def _number(panel: Any, place: float, height: float, text: str) -> None:
 
 
 def draw_map(rig: Rig, folder: Path) -> Path:
-    """p over input resistance and press time, and where it is what the paper prints."""
+    """Draw p over input resistance and press time, and where it is what the paper prints."""
     figure, panels = new_figure(2, height_in=4.0)
     resistances, times = np.geomspace(*RESISTANCES_MOHM, 24), np.array(TIMES_S)
     possible = INPUTS["resistance_MOhm"]

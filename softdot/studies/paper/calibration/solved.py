@@ -55,7 +55,7 @@ class Name(NamedTuple):
 
 @dataclass(frozen=True)
 class Solved:
-    """All presses of one case."""
+    """Presses of one case."""
 
     case: RigCase
     curves: Mapping[str, PressCurve]
@@ -93,7 +93,7 @@ def solve_rig(progress: Progress, executor: Executor) -> dict[str, Solved]:
 
 
 def _configs() -> Iterator[tuple[Name, Config]]:
-    """Every press, the long ones first, so that no core waits at the end."""
+    """Configurations of every press, the long ones first, so that no core waits at the end."""
     for model in (ROUND, FOAM, SIMULATED):
         for name, case in CASES.items():
             if model != FOAM:
@@ -145,7 +145,7 @@ def _responses(case: RigCase, model: str, curves: Mapping[Name, PressCurve]) -> 
 
 
 def _response(depth_mm: float, at: Mapping[float, PressCurve], reference: float) -> RigResponse:
-    """From the presses at the values of one input, to those at the reference value."""
+    """Response from the presses at the values of one input, relative to those at the reference value."""
     order = sorted(at)
     reached = np.array([[at[value].force_at(depth_mm), at[value].voltage_at(depth_mm)] for value in order])
     return RigResponse(np.array(order), reached / reached[order.index(reference)])

@@ -37,7 +37,7 @@ def span(low: float, high: float) -> str:
 
 
 def pieces(rig: Rig, spread: Ranges) -> PaperTable:
-    """Both cases piece by piece: factor, its range, its share."""
+    """Table of both cases piece by piece: factor, its range, its share."""
     found = factors(rig, assumed_inputs())
     rows: list[list[Cell]] = [["ideal output (V/mm)", *_outputs(found, 0)]]
     for number, piece in enumerate(PIECES, start=1):

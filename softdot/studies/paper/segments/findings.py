@@ -17,7 +17,7 @@ OUT_OF_REACH = 1.5
 
 
 def findings(study: Study) -> list[str]:
-    """For the top of the page."""
+    """Findings for the top of the page."""
     slab, solid = (presses[FINAL] for presses in study.readings.values())
     forces = [
         press.force_N / published_numbers()[f"section4.force.{name}"].value for name, press in _stated_forces(study)
@@ -55,7 +55,7 @@ def changes(study: Study) -> str:
 
 
 def yielding(study: Study) -> str:
-    """Where the film is stressed beyond its yield."""
+    """Sentence on the cases whose film is stressed beyond its yield."""
     film = segment_config("free", 0.8, 5.0).layer_materials()["film"]
     limit = film.model_dump()["yield_stress_MPa"]
     beyond = {
@@ -85,7 +85,7 @@ def _furthest(ratios: list[float]) -> str:
 
 
 def _verdicts(study: Study) -> str:
-    """How many trends hold in the cross-section."""
+    """Sentence on how many trends hold in the cross-section."""
     verdicts = [claim.holds for claim in claims(study) if claim.reading == SHORT_NAMES["plane-strain"]]
     return (
         f"Of {len(verdicts)} statements on trends {verdicts.count(True)} hold, {verdicts.count(False)} fail and "
@@ -94,7 +94,7 @@ def _verdicts(study: Study) -> str:
 
 
 def _passing(study: Study) -> str:
-    """How many designs pass the criterion in a true segment."""
+    """Sentence on how many designs pass the criterion in a true segment."""
     rows = tables.criterion(study).rows
     passed = sum(row[-1] is True for row in rows)
     words = f"all {len(rows)} pairs" if passed == len(rows) else f"{passed or 'none'} of the {len(rows)} pairs"
@@ -102,7 +102,7 @@ def _passing(study: Study) -> str:
 
 
 def _clamped_below_free(study: Study) -> str:
-    """How often held sides give less in a true segment."""
+    """Sentence on how often held sides give less in a true segment."""
     solid, pairs = study.readings["solid"], (*PAIRS, *LATER_PAIRS)
     below = sum(solid[clamped].voltage_V < solid[free].voltage_V for clamped, free in pairs)
     return f"held sides give less voltage than free ones in {below} of them"

@@ -36,7 +36,7 @@ def section_of(study: Study, folder: Path) -> Section:
 
 
 def numbers(study: Study) -> dict[str, object]:
-    """Every press, for paper.json."""
+    """Values of every press for paper.json."""
     return {
         "readings": {reading: _plain(presses) for reading, presses in study.readings.items()},
         "refined": {reading: press_numbers(press) for reading, press in study.refined.items()},
@@ -126,7 +126,7 @@ def _selected_designs(study: Study, folder: Path) -> list[Block]:
 
 
 def _depth(study: Study, folder: Path) -> list[Block]:
-    """How the voltage grows with depth."""
+    """Blocks on the growth of the voltage with depth."""
     return [
         Heading("The voltage is not proportional to the depth"),
         Figure(
@@ -140,7 +140,7 @@ def _depth(study: Study, folder: Path) -> list[Block]:
 
 
 def _every_press(study: Study) -> list[Block]:
-    """All numbers, and how far to trust them."""
+    """Blocks with all numbers, and how far to trust them."""
     return [
         Heading("Every press"),
         yielding(study),

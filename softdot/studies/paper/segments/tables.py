@@ -82,7 +82,7 @@ def _printed_sum(pair: tuple[str, str]) -> float | None:
 
 
 def readings(study: Study) -> PaperTable:
-    """Both readings side by side."""
+    """Table of both readings side by side."""
     slab, solid = study.readings["plane-strain"], study.readings["solid"]
     rows: list[list[Cell]] = []
     for name in CASES:

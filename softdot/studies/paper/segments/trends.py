@@ -32,7 +32,7 @@ FAR_BELOW = 5.0
 
 
 def claims(study: Study) -> list[Claim]:
-    """Every trend in every reading."""
+    """Claims on every trend in every reading."""
     return [
         Claim(text, *test(presses), SHORT_NAMES[reading])
         for text, test in TRENDS.items()

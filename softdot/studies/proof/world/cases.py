@@ -203,7 +203,7 @@ def _strengths(case: Case) -> dict[str, float]:
 
 
 def _nuisance(bench: Bench, rng: np.random.Generator) -> dict[Any, float]:
-    """Within the declared widths; specimens come from a pool, so that their presses are solved once."""
+    """Draw nuisances within the declared widths; specimens come from a pool, so that their presses are solved once."""
     drawn: dict[Any, float] = {}
     pool = np.random.default_rng(sum(map(ord, bench.name))).standard_normal((SPECIMENS, 20)).clip(-2.0, 2.0)
     specimen = int(rng.integers(SPECIMENS))
@@ -217,7 +217,7 @@ def _nuisance(bench: Bench, rng: np.random.Generator) -> dict[Any, float]:
 
 @lru_cache(maxsize=512)
 def _strength(judge: Judge, name: str, size: float) -> float:
-    """At which an effect has a size on the nominal bench, or the most that is real."""
+    """Strength at which an effect has a size on the nominal bench, or the most that is real."""
     belief, effect, strength = baseline(judge.bench), EFFECTS[name], 1.0
     for _ in range(SIZING_STEPS):
         reached = judge.rms(judge.residual(apply_effects(belief, judge.bench, {name: strength}), belief))
@@ -229,7 +229,7 @@ def _strength(judge: Judge, name: str, size: float) -> float:
 
 
 def _force_ratio(name: str, bench: Bench, without: Reality, reality: Reality) -> dict[str, float]:
-    """With over without at the deepest press, for laws that stiffen."""
+    """Ratio of the force with the effect to that without at the deepest press, for laws that stiffen."""
     if EFFECTS[name].mechanism != "hyperelastic-stiffening" or not bench.force:
         return {}
     on, off = (

@@ -30,7 +30,7 @@ class Skin:
         return np.asarray(self.place + np.einsum("kqa,kai->kqi", self.shape, u[self.nodes]))
 
     def dofs(self, dim: int) -> Indices:
-        """(k, a d) unknowns."""
+        """Unknowns (k, a d) of the facets."""
         return unknowns(self.nodes, dim)
 
 
@@ -47,7 +47,9 @@ def skin(mesh: Grid, chosen: NDArray[np.bool_]) -> Skin:
 
 @dataclass(frozen=True)
 class Touch:
-    """At points (k, q) : distance from the centre of the dot, gap (negative where they touch), normal away from it."""
+    """Contact at points (k, q) : distance from the centre of the dot, gap (negative where they touch), normal away from
+    it.
+    """
 
     distance: Floats
     gap: Floats

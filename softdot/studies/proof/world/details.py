@@ -33,7 +33,7 @@ class Details:
         return cls(tuple(rng.uniform(1.0 / 3.0, 1.0, 5).tolist()), int(rng.integers(2**32)))
 
     def path(self, time: Floats, stage: Floats, run: int) -> Floats:
-        """Where the surface is (t,) when the encoder says stage (t,): jitter, then the softness of the first touch."""
+        """Place of the surface (t,) when the encoder says stage (t,): jitter, then the softness of the first touch."""
         rng = np.random.default_rng([self.seed, run])
         tones, phases = rng.uniform(*JITTER_HZ, TONES), rng.uniform(0.0, 2.0 * np.pi, TONES)
         waves = np.sin(2.0 * np.pi * np.outer(time, tones) + phases).sum(axis=1) * np.sqrt(2.0 / TONES)

@@ -292,7 +292,7 @@ def growing_value(name: str, scale: float, start: float = 0.0) -> Callable[[Benc
 
 
 def crosstalk_of_pair(one: int, other: int) -> Effect:
-    """Between two channels, numbered from 1."""
+    """Effects of a stray capacitance between two channels, numbered from 1."""
     return Effect(
         f"crosstalk-{one}-{other}",
         "crosstalk",

@@ -40,7 +40,7 @@ class Grid:
 
     @property
     def copies(self) -> int:
-        """How often the piece makes the whole."""
+        """Number of copies of the piece that make the whole."""
         half = 1 if self.whole else 2
         return half if self.mesh.dim() == 2 else 4
 

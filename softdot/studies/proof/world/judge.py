@@ -31,7 +31,7 @@ class Judge:
 
     @cached_property
     def _tangents(self) -> Floats:
-        """(t, k) by secants over one sigma."""
+        """Changes (t, k) of the signals by the nuisances, by secants over one sigma."""
         belief = baseline(self.bench)
         base, columns = whiten(record(belief, self.bench), self.bench), []
         for name, width in self.bench.nuisance:
@@ -66,7 +66,7 @@ class Judge:
 
 
 def shares(left: Floats, bench: Bench) -> dict[tuple[str, str], float]:
-    """(label of run, channel) -> its share of the energy of an effect."""
+    """Share of the energy of an effect, (label of run, channel) -> share."""
     found, start, total = {}, 0, float(left @ left) or 1.0
     for run in bench.runs:
         for name in channels(bench):

@@ -58,7 +58,7 @@ def volumetric(f: Floats) -> tuple[Floats, Floats]:
 
 
 def volume_curvature(j: Floats, cofactor: Floats, pressure: Floats) -> Floats:
-    """pressure d2J/dF2 (n, 3, 3, 3, 3)."""
+    """Second derivative pressure d2J/dF2 (n, 3, 3, 3, 3)."""
     bend = np.einsum("nij,nkl->nijkl", cofactor, cofactor) - np.einsum("nil,nkj->nijkl", cofactor, cofactor)
     return np.asarray((pressure / j)[:, None, None, None, None] * bend)
 
@@ -92,7 +92,7 @@ def tangent_of_gradient(f: Floats, law: Floats) -> Floats:
 
 
 def geometric(stress: Floats) -> Floats:
-    """dP/dF of P = F S for a fixed S (n, 3, 3)."""
+    """Derivative dP/dF of P = F S for a fixed S (n, 3, 3)."""
     return np.asarray(np.einsum("ik,njl->nijkl", EYE, stress))
 
 

@@ -87,7 +87,7 @@ class Made:
 
     @property
     def strips(self) -> tuple[tuple[float, float], ...]:
-        """From and to along x of every electrode."""
+        """Begin and end along x of every electrode."""
         return self.electrodes or ((-self.length_mm / 2.0, self.length_mm / 2.0),)
 
     @property

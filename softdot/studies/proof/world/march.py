@@ -134,7 +134,7 @@ def _course(answers: Sequence[Answer], zero: Answer) -> Course:
 
 
 def _spline(depth_mm: Floats, values: Floats) -> CubicSpline:
-    """From rest at the touch. A monotonic interpolant would be 1.3 % off a cap's charge between ten depths."""
+    """Spline from rest at the touch. A monotonic interpolant would be 1.3 % off a cap's charge between ten depths."""
     return CubicSpline(depth_mm, values, bc_type=((1, np.zeros(values.shape[1:])), "not-a-knot"))
 
 
@@ -183,7 +183,7 @@ def _file_of(name: str) -> _CourseFile:
 
 
 def store() -> Path:
-    """Where solved presses are kept: SOFTDOT_PROOF_CACHE or the user's cache. A diagnosis has no access to it."""
+    """Folder of solved presses: SOFTDOT_PROOF_CACHE or the user's cache. A diagnosis has no access to it."""
     from platformdirs import user_cache_dir
 
     return Path(os.environ.get("SOFTDOT_PROOF_CACHE") or user_cache_dir("softdot-proof"))

@@ -45,7 +45,7 @@ class Memory:
 
 
 def at_rest(layer: Layer, points: int) -> Memory:
-    """Nothing has happened."""
+    """Memory before anything has happened."""
     count = len(branches(layer.spectrum)[0]) if layer.spectrum else 0
     return Memory(np.zeros((points, 3, 3)), np.zeros((count, points, 3, 3)), np.zeros(points))
 
@@ -72,7 +72,9 @@ def respond(layer: Layer, f: Floats, old: Memory, step_s: float) -> tuple[Floats
 
 
 def _branch_step(spectrum: Spectrum, step_s: float) -> tuple[Floats, Floats]:
-    """q <- kept q + weight (s - s_old): trapezium for slow branches, backward Euler for those faster than the step."""
+    """New branch stress q <- kept q + weight (s - s_old): trapezium for slow branches, backward Euler for those faster
+    than the step.
+    """
     share, tau = branches(spectrum)
     a = step_s / tau
     theta = np.where(a < 1.0, 0.5, 1.0)

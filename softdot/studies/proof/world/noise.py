@@ -40,7 +40,9 @@ class Autoregression:
 
 @lru_cache(maxsize=8)
 def noises() -> Mapping[str, Autoregression]:
-    """force_N and voltage_V: from rest in SOFTDOT_RECORDINGS (presses of P(VDF-TrFE) as .npz), else as stated."""
+    """Noise of force_N and voltage_V: from rest in SOFTDOT_RECORDINGS (presses of P(VDF-TrFE) as .npz), else as
+    stated.
+    """
     folder = os.environ.get("SOFTDOT_RECORDINGS")
     if folder:
         return fit_noise(Path(folder))

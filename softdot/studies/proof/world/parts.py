@@ -19,7 +19,7 @@ from softdot.studies.proof.world.plastic import Flow, flow_step
 
 
 def unknowns(nodes: Indices, dim: int) -> Indices:
-    """(m, a dim) of nodes (m, a): node by node, component by component."""
+    """Unknowns (m, a dim) of nodes (m, a): node by node, component by component."""
     return np.asarray((nodes[:, :, None] * dim + np.arange(dim)).reshape(len(nodes), -1))
 
 
@@ -36,7 +36,7 @@ class Part:
 
     @property
     def dofs(self) -> Indices:
-        """(m, a d) unknowns."""
+        """Unknowns (m, a d) of the elements."""
         return unknowns(self.nodes, self.gradient.shape[3])
 
     def start(self) -> Memory | Flow | None:
@@ -98,7 +98,7 @@ class Part:
         return np.asarray(np.linalg.inv(np.einsum("mql,mqk->mlk", weighted, self.linear)))
 
     def _pressure(self, change: Floats) -> Floats:
-        """(m q,) of the averaged volume change (m q,)."""
+        """Pressure (m q,) of the averaged volume change (m q,)."""
         weighted = self.weight * change.reshape(self.weight.shape)
         share = np.einsum("mlk,mqk,mq->ml", self._averaging, self.linear, weighted)
         return np.asarray(laws.bulk_modulus(self.layer) * np.einsum("mql,ml->mq", self.linear, share).ravel())
@@ -110,7 +110,7 @@ class Part:
         return np.asarray(laws.bulk_modulus(self.layer) * rate.transpose(0, 2, 1) @ self._averaging @ rate)
 
     def _plane(self, tensor: Floats) -> Floats:
-        """(m q, 3, 3) -> (m, q, d, d)."""
+        """Components in the plane (m, q, d, d) of tensors (m q, 3, 3)."""
         axes = np.array([0, 2] if self.gradient.shape[3] == 2 else [0, 1, 2])
         return tensor[:, axes[:, None], axes].reshape(*self.weight.shape, len(axes), len(axes))
 
@@ -130,7 +130,7 @@ class Part:
 
 
 def parts(made_layers: tuple[Layer | Film | Glue, ...], mesh: Grid) -> tuple[list[Part], Floats]:
-    """Every layer, and the places (n, d) of the nodes."""
+    """Parts of every layer, and the places (n, d) of the nodes."""
     element = ElementQuad2() if mesh.mesh.dim() == 2 else ElementHex2()
     basis = Basis(mesh.mesh, element, intorder=4)
     gradient = np.stack([field[0].grad for field in basis.basis]).transpose(2, 3, 0, 1)

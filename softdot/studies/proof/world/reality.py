@@ -201,7 +201,7 @@ def _touched_share(course: Course) -> Floats:
 
 
 def _amplifier(reality: Reality, run: Run) -> Amplifier:
-    """With the resistor and the capacitor of this run and the leak beside them."""
+    """Amplifier with the resistor and the capacitor of this run and the leak beside them."""
     have = run.resistance_MOhm if run.resistance_MOhm is not None else reality.amplifier.resistance_MOhm
     capacitance = reality.amplifier.capacitance_pF + run.added_pF
     return replace(reality.amplifier, resistance_MOhm=have, capacitance_pF=capacitance).leaking(reality.leak_MOhm)
@@ -213,7 +213,7 @@ PER_CHANNEL = {"gain", "lag_s", "offset_V"}
 
 
 def keys(name: str, bench: Bench) -> list[Any]:
-    """Under which the numbers of one nuisance are kept."""
+    """Keys of the numbers of one nuisance."""
     if name not in PER_RUN:
         return [name]
     runs, count = range(len(bench.runs)), len(bench.voltages)

@@ -44,7 +44,7 @@ def with_strength(made: Made, value: float) -> Made:
 
 
 def forgetful(made: Made) -> Made:
-    """Without memory."""
+    """The stack without memory."""
     still = with_strength(made, 0.0)
     layers = tuple(replace(one, yield_MPa=None) if isinstance(one, Film) else one for one in still.layers)
     return replace(still, layers=layers)

@@ -28,7 +28,7 @@ Sized = tuple[float, float]
 
 
 def _layers(medium2: Sized, medium1: Sized, effector: Sized, held: bool) -> tuple[Layer | Film, ...]:
-    """From the base upwards; what is held is held at its sides, all but medium 2."""
+    """Layers from the base upwards; what is held is held at its sides, all but medium 2."""
     upper = Layer("medium1", *medium1, held=held), Layer("effector", *effector, held=held)
     return (Layer("medium2", *medium2), Film(held=held), *upper)
 
@@ -133,7 +133,7 @@ ROW = Bench(
 
 
 def _two_steps(depth_mm: float, step_s: float = 0.004) -> Traced:
-    """To half the depth, a second's rest, to all of it, and back, with the acceleration of the other runs."""
+    """Run to half the depth, a second's rest, to all of it, and back, with the acceleration of the other runs."""
     half_mm = 0.5 * depth_mm
     legs = (1.0, 0.2, half_mm + CLEAR_MM), (2.2, 0.2, half_mm), (3.6, 0.3, -depth_mm - CLEAR_MM)
     times = np.asarray(step_s * np.arange(round(4.6 / step_s) + 1), dtype=np.float64)

@@ -35,7 +35,7 @@ class Run:
 
     @property
     def length_s(self) -> float:
-        """From the first to the last sample."""
+        """Time from the first to the last sample."""
         return self.lead_s + self.count * (2.0 * self.rise_s + self.hold_s + self.pause_s)
 
     def times(self, rate_Hz: float) -> Floats:
@@ -54,7 +54,7 @@ class Run:
         return depth
 
     def presses_before(self, time_s: Floats) -> Floats:
-        """How many have been made."""
+        """Number of presses made before a time."""
         each = 2.0 * self.rise_s + self.hold_s + self.pause_s
         return np.asarray(np.clip(np.floor((time_s - self.lead_s) / each), 0, self.count - 1))
 

@@ -221,7 +221,7 @@ class _Scatter:
         self.values.append(matrices.ravel())
 
     def matrix(self) -> sp.csr_matrix:
-        """Their sum."""
+        """Sum of the matrices that were added."""
         place = (np.concatenate(self.rows), np.concatenate(self.columns))
         size = len(self.residual)
         return sp.coo_matrix((np.concatenate(self.values), place), shape=(size, size)).tocsr()
