@@ -119,7 +119,7 @@ def test_a_press_may_snap_and_a_table_over_depth_may_not(monkeypatch):
 
     monkeypatch.setattr(marching, "_equilibrate", fails)
     monkeypatch.setattr(marching, "snap", falls)
-    monkeypatch.setattr(marching, "explained", lambda *_: "no")
+    monkeypatch.setattr(marching, "explain_failure", lambda *_: "no")
     monkeypatch.setattr(marching, "rim_met", lambda *_: None)
     monkeypatch.setattr(marching, "with_work", lambda *given: given[-1])
     target, arrived = Target(1.0, Load((0.0, 0.0), 1.0), True), list[State]()

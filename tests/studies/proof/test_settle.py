@@ -53,7 +53,7 @@ def test_a_dot_that_has_to_be_as_warm_as_the_film_cannot_be_had_here():
 
 def test_the_longer_recording_begins_with_what_there_was(monkeypatch):
     more = {"time_s": TIME, "of": "the same specimen"}
-    monkeypatch.setattr("softdot.studies.proof.asked_presses.pressed_again", lambda *_: more)
+    monkeypatch.setattr("softdot.studies.proof.asked_presses.press_again", lambda *_: more)
     before = [{"time_s": TIME}] * 4
     warm = {**experiment(dot_temperature="of the film"), "waveform": "next-press-2.csv"}
     slow = {**experiment(speed_factor=0.1), "waveform": "next-press-3.csv"}
@@ -94,6 +94,6 @@ def test_only_the_truth_alone_is_a_resolved_group(named, groups, resolved, left,
         "mismatch": True, "unexplained": not named, "ambiguous_with": groups,
         "missing_physics": [{**one, "parameters": {}} for one in named],
     }  # fmt: skip
-    monkeypatch.setattr(trial, "diagnosed", lambda *_: Heard(verdict, "", 1.0))
+    monkeypatch.setattr(trial, "diagnose_isolated", lambda *_: Heard(verdict, "", 1.0))
     monkeypatch.setattr(trial, "_score", lambda _, t, v, s: score_verdict(t, v, lambda _: 0.5, s))
     assert trial._settle(CASE, Terms("."), truth, {})[1:] == (resolved, left)
