@@ -12,13 +12,14 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
-from threading import Event
-from typing import Any, Self
+from threading import Event, Timer
+from typing import IO, Any, Self
 
 from foundation.child_processes import child_python_path, end_with_parent, python_command
 from foundation.scratch_folders import sweep_scratch
 
 OOM_SCORE_FILE = Path("/proc/self/oom_score_adj")
+LONGEST_END_S = 5.0
 
 
 class ProcessDiedError(RuntimeError):
@@ -33,13 +34,15 @@ class WorkerProcess:
     An inner block may end it earlier.
     """
 
-    def __init__(self, variables: Mapping[str, str] | None = None) -> None:
-        """variables : environment variables of the worker beside those of this process."""
+    def __init__(self, variables: Mapping[str, str] | None = None, log: IO[bytes] | None = None) -> None:
+        """variables : environment variables of the worker beside those of this process. log : file that takes what
+        libraries print there, else the standard error of this process does.
+        """
         command = python_command("-m", __name__, str(os.getpid()))
         own = {**os.environ, **(variables or {}), **child_python_path()}
         pipe = subprocess.PIPE
         # in a session of its own: Ctrl-C in the terminal reaches this process alone, which ends it
-        self._process = subprocess.Popen(command, env=own, stdin=pipe, stdout=pipe, start_new_session=True)
+        self._process = subprocess.Popen(command, env=own, stdin=pipe, stdout=pipe, stderr=log, start_new_session=True)
         self._over, self._pool = Event(), ThreadPoolExecutor(1)
 
     def __enter__(self) -> Self:
@@ -55,6 +58,13 @@ class WorkerProcess:
         """Kill the process at once: a library could hold up one that is asked to end for seconds."""
         self._process.kill()
         self._process.wait()
+
+    def exit_status(self) -> int:
+        """Return the exit status of a process that died, negative for a signal; one that still ends is waited for."""
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(LONGEST_END_S)
+        self.kill()
+        return int(self._process.returncode)
 
     def __call__(self, function: Callable[..., Any], *arguments: Any) -> "Future[Any]":
         """Return the future of a call. function : one that a module holds under its name."""
@@ -84,6 +94,25 @@ class WorkerProcess:
         if not done:
             raise value
         return value
+
+    def call_within(self, timeout_s: float, function: Callable[..., Any], *arguments: Any) -> Any:
+        """Do a call as call does, but kill the worker after a time in s. TimeoutError."""
+        over = Event()
+
+        def stop() -> None:
+            over.set()
+            self._process.kill()
+
+        limit = Timer(timeout_s, stop)
+        limit.start()
+        try:
+            return self.call(function, *arguments)
+        except ProcessDiedError:
+            if over.is_set():
+                raise TimeoutError(f"a call took longer than {timeout_s:g} s") from None
+            raise
+        finally:
+            limit.cancel()
 
 
 def serve_calls() -> None:

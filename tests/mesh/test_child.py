@@ -1,8 +1,7 @@
 """The child process around pytetwild never outlives its parent's call."""
 
 import os
-import subprocess
-import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +9,7 @@ import pytest
 from mesh_samples import dot, options, segment
 
 import mesh
+from foundation.worker_process import WorkerProcess
 from mesh import tetwild_process as child
 from mesh.types import MeshingError
 
@@ -42,28 +42,44 @@ def test_timeout_is_one_sentence_and_leaves_no_process(monkeypatch: pytest.Monke
     assert not list(tmp_path.iterdir())
 
 
+def exits_with(status: int) -> None:
+    print("a")
+    print("no room", flush=True)
+    os._exit(status)
+
+
+def dies_by(number: int) -> None:
+    os.kill(os.getpid(), number)
+
+
+def is_no_surface() -> None:
+    print("chatter", flush=True)
+    raise ValueError("no surface")
+
+
 @linux
 def test_interrupt_kills_the_child(monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(*_: object, **__: object) -> tuple[bytes, bytes]:
-        monkeypatch.undo()
+    def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
     before = children()
-    monkeypatch.setattr(subprocess.Popen, "communicate", interrupted)
+    monkeypatch.setattr(WorkerProcess, "call", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        child._run_child([sys.executable, "-c", "import time; time.sleep(60)"], 30.0)
+        child._call_mesher(30.0, time.sleep, 60.0)
     assert children() == before
 
 
-def test_a_failing_child_reports_its_last_line() -> None:
-    with pytest.raises(MeshingError, match=r"exit code 3: no room$"):
-        child._run_child([sys.executable, "-c", "print('a'); print('no room'); raise SystemExit(3)"], 30.0)
-
-
-def test_output_of_the_child_is_not_shown(capfd: pytest.CaptureFixture[str]) -> None:
-    child._run_child([sys.executable, "-c", "print('chatter')"], 30.0)
-    said = capfd.readouterr()
-    assert said.out + said.err == ""
+@linux
+@pytest.mark.parametrize(
+    ("function", "argument", "said"),
+    [(exits_with, (3,), "failed with exit code 3: no room"), (dies_by, (9,), "ended by signal 9, as a system does"),
+     (is_no_surface, (), "failed: ValueError: no surface")],
+)  # fmt: skip
+def test_a_failing_child_is_one_sentence_and_shows_nothing(function, argument, said, capfd) -> None:
+    with pytest.raises(MeshingError, match=said):
+        child._call_mesher(30.0, function, *argument)
+    shown = capfd.readouterr()
+    assert shown.out + shown.err == ""
 
 
 @pytest.mark.press
