@@ -119,7 +119,7 @@ def _unit_gain(own: Filter) -> float:
 
 @nb.njit(cache=True)
 def _recur(number: Ints, a: Floats, first: Floats, second: Floats, c: Floats, d: float, given: Floats) -> Floats:
-    """Answer (n,) of x <- A x + first v_n + second v_(n+1) from x = 0, with the A and gains of each step; y = c x + d
+    """Answer (n,) of x <- A x + first v_n + second v_(n+1) from x = 0, with the A and gains of each step, y = c x + d
     v.
     """
     order = len(c)

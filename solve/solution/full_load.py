@@ -19,7 +19,7 @@ from solve.solution.errors import NoEquilibriumError
 from solve.solution.linear import LinearSolver
 from solve.solution.march import march, rest_state
 from solve.solution.schedule import Target
-from solve.solution.sensitivity import Variation, tow, twins_of
+from solve.solution.sensitivity import Variation, update_pair, varied_systems
 from solve.solution.similar_press import Equilibria, reach
 from solve.symmetry import planes_of
 from solve.system import State
@@ -63,11 +63,11 @@ class FullLoad:
         trial = system.trial(self._state.x, self._state.load, self._state.time, self._rest_state)
         tangent = system.evaluate(trial, self._rest_state.histories).tangent
         for number, (name, variation) in enumerate(variations.items()):
-            pair = twins_of(name, variation, base)
-            for twin in pair:
-                twin.start(self._rest_state)
-            tow(pair, self._linear, tangent, self._state, similar=number > 0)
-            below, above = (_last_response(twin.setup) for twin in pair)
+            pair = varied_systems(name, variation, base)
+            for side in pair:
+                side.start(self._rest_state)
+            update_pair(pair, self._linear, tangent, self._state, similar=number > 0)
+            below, above = (_last_response(side.setup) for side in pair)
             found[name] = FullResponse(*((high - low) / variation.span for low, high in zip(below, above, strict=True)))
         return found
 

@@ -2,8 +2,8 @@
 
 The state of a step obeys R(x, history, p) = 0. Differentiated, with the converged tangent K,
     K dx/dp = -(R(x, history + e dhistory, p + e) - R(x, history - e dhistory, p - e)) / 2e,
-and the new memory follows from the terms' own advance at x +- e dx. Each parameter so carries two twins, systems at
-p + e and p - e whose states stay within first order of their equilibria; one factorisation serves all of them.
+and the new memory follows from the terms' own advance at x +- e dx. Each parameter so carries two systems, at
+p + e and p - e, whose states stay within first order of their equilibria; one factorisation serves all of them.
 The difference quotient of the residual makes this the semi-analytical method (Tsay and Arora, Comput. Methods Appl.
 Mech. Eng. 81, 1990, for path dependence; van Keulen, Haftka and Kim, ibid. 194, 2005): no law states derivatives of
 its own.
@@ -49,7 +49,7 @@ class Slopes:
     readout_voltage_V: Floats | None
 
 
-class Twin:
+class VariedSystem:
     """A system at p + e or p - e, and the state that follows the base to first order."""
 
     def __init__(self, setup: Setup, drive_ratio: float) -> None:
@@ -65,8 +65,8 @@ class Twin:
         self.state = replace(base, load=self.load(base.load), histories=self.setup.system.at_rest(base.load).histories)
         self.setup.recorder.start(self.state)
 
-    def ahead(self, other: "Twin") -> Floats:
-        """Difference (count,) of the unknowns of two twins."""
+    def ahead(self, other: "VariedSystem") -> Floats:
+        """Difference (count,) of the unknowns of two systems."""
         assert self.state is not None
         assert other.state is not None
         return self.state.x - other.state.x
@@ -91,7 +91,7 @@ class Twin:
         return Slopes(trace, open_circuit, read[np.searchsorted(base.time_s, trace.time_s)])
 
     def follow(self, x: Floats, base: State) -> None:
-        """Take the step to the unknowns x."""
+        """Take the step to the unknowns x (count,)."""
         assert self.state is not None
         load = self.load(base.load)
         trial = self.setup.system.trial(x, load, base.time, self.state, base.is_damped)
@@ -110,43 +110,47 @@ def press_with_sensitivities(
     """
     varied = [changed for variation in variations.values() for changed in (variation.below, variation.above)]
     base = discretise(model, tet_mesh, resolve_dot(model.dot, model.segment), varied)
-    twins = {name: twins_of(name, variation, base) for name, variation in variations.items()}
+    pairs = {name: varied_systems(name, variation, base) for name, variation in variations.items()}
     linear = LinearSolver(base.system.factorisation_shift)
-    failure = _march(base, linear, twins)
+    failure = _march(base, linear, pairs)
     linear.close()
     result = base.recorder.result(failure, linear.name, model.press, follows_time=True)
     along = course(result, model.press, model.amplifier, model.physics)
     slopes = {}
-    for name, pair in twins.items():
-        low, high = (twin.history(along, model.press) for twin in pair)
+    for name, pair in pairs.items():
+        low, high = (side.history(along, model.press) for side in pair)
         slopes[name] = _difference(low, high, variations[name].span)
     return result, slopes
 
 
-def twins_of(name: str, variation: Variation, base: Setup) -> tuple[Twin, Twin]:
-    """Systems below and above, on the base's mesh moved to their sizes; ValueError as press_with_sensitivities."""
+def varied_systems(name: str, variation: Variation, base: Setup) -> tuple[VariedSystem, VariedSystem]:
+    """Systems a little below and above, on the base's mesh moved to their sizes; ValueError as
+    press_with_sensitivities.
+    """
     pair = []
     for changed in (variation.below, variation.above):
         moved = morphed_mesh(base.tet_mesh, base.model.segment, changed.segment)
         setup = set_up(changed, resolve_dot(changed.dot, changed.segment), moved, base.opened, base.system.units)
         if setup.system.count != base.system.count:
             raise ValueError(f"{name}: this parameter switches something on or off at its present value")
-        pair.append(Twin(setup, setup.full_drive / base.full_drive))
+        pair.append(VariedSystem(setup, setup.full_drive / base.full_drive))
     return pair[0], pair[1]
 
 
-def _march(base: Setup, linear: LinearSolver, twins: Mapping[str, tuple[Twin, Twin]]) -> str | None:
-    """March along the schedule with the twins in tow; why it stopped short, or None. NoEquilibriumError at rest."""
+def _march(base: Setup, linear: LinearSolver, pairs: Mapping[str, tuple[VariedSystem, VariedSystem]]) -> str | None:
+    """March along the schedule with the varied systems beside; why it stopped short, or None. NoEquilibriumError at
+    rest.
+    """
     targets = base.targets(follows_time=True)
     rest = rest_state(base.system, linear, targets[0])
     base.recorder.start(rest)
-    for pair in twins.values():
-        for twin in pair:
-            twin.start(rest)
+    for pair in pairs.values():
+        for side in pair:
+            side.start(rest)
 
     def on_state(state: State, before: State) -> None:
         base.recorder.record(state, before)
-        _tow(base, linear, twins, state, before)
+        _update_pairs(base, linear, pairs, state, before)
 
     past, kink, failure = [rest], targets[0].kink, None
     for target in targets[1:]:
@@ -159,18 +163,24 @@ def _march(base: Setup, linear: LinearSolver, twins: Mapping[str, tuple[Twin, Tw
     return failure
 
 
-def _tow(
-    base: Setup, linear: LinearSolver, twins: Mapping[str, tuple[Twin, Twin]], state: State, before: State
+def _update_pairs(
+    base: Setup,
+    linear: LinearSolver,
+    pairs: Mapping[str, tuple[VariedSystem, VariedSystem]],
+    state: State,
+    before: State,
 ) -> None:
-    """Bring all twins to first order to a converged state of the base."""
+    """Bring all varied systems to first order to a converged state of the base."""
     trial = base.system.trial(state.x, state.load, state.time, before, state.is_damped)
     tangent = base.system.evaluate(trial, before.histories).tangent
-    for number, pair in enumerate(twins.values()):
-        tow(pair, linear, tangent, state, similar=number > 0)
+    for number, pair in enumerate(pairs.values()):
+        update_pair(pair, linear, tangent, state, similar=number > 0)
 
 
-def tow(pair: tuple[Twin, Twin], linear: LinearSolver, tangent: Tangent, state: State, similar: bool) -> None:
-    """Bring two twins to first order to a converged state of the base; similar : its tangent is factorised already.
+def update_pair(
+    pair: tuple[VariedSystem, VariedSystem], linear: LinearSolver, tangent: Tangent, state: State, similar: bool
+) -> None:
+    """Bring two varied systems to first order to a converged state of the base; similar : its tangent is factorised.
 
     From where they stand apart already: a dot that rests leaves them so, also where the base is at the very limit of
     friction and its tangent slips.

@@ -31,7 +31,7 @@ NODES_PER_CUBE = 8  # of an element's size: one corner and seven mid-sides
 def rig_mesh(
     model: Model, options: MeshOptions, largest: int = LARGEST, coarsen: bool = True
 ) -> tuple[TetMesh, MeshOptions]:
-    """The mesh whose whole has as many nodes at most, and its sizes, which grow together until it is small enough.
+    """Mesh whose whole has at most a number of nodes, and its sizes, which grow together until it is small enough.
 
     Layered wherever that mesher can, as it is repeatable and takes no time. Under a dome it cannot, and a round skin
     may need more nodes whatever the sizes: there the search ends where coarser elements save no more. InputError,

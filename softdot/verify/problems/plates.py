@@ -46,7 +46,7 @@ def quarter_disc(middle: Floats, heights: Floats) -> Grid:
 
 
 def thin_plate(load: float = NON_LINEAR_LOAD, patch: float = 1.0) -> float:
-    """Deflection over thickness under a pressure on r < patch; load = F a^2 / (E t^4)."""
+    """Deflection of a thin plate over its thickness under a pressure on r < patch; load = F a^2 / (E t^4)."""
     middle = (
         np.linspace(0.0, 0.85, 12) if patch == 1.0 else np.append(0.0, graded_coordinates(patch, 0.85, patch, 0.08))
     )

@@ -116,7 +116,7 @@ def _plane(panel: Any, search: Search) -> None:
 
 
 def draw_final(compared: Mapping[str, Sequence[DesignTrial]], names: Sequence[str], folder: Path) -> Path:
-    """Voltage, force and film stress of the compared designs, by both meshers."""
+    """Draw voltage, force and film stress of the compared designs, by both meshers."""
     figure, panels = new_figure(3, height_in=3.8, width_in=9.5)
     for panel, (name, words) in zip(
         panels,

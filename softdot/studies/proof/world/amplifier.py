@@ -57,7 +57,7 @@ class Amplifier:
         return np.asarray(voltage)
 
     def leaking(self, resistance_MOhm: float | None) -> "Amplifier":
-        """With a resistance beside that of its input; None for none."""
+        """The amplifier with a resistance beside that of its input; None for none."""
         conductance = sum(1.0 / r for r in (self.resistance_MOhm, resistance_MOhm) if r is not None)
         return replace(self, resistance_MOhm=1.0 / conductance if conductance else None)
 
