@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnose.signals.recording import Recording
+from diagnose.signals.recording import Drive, Recording
+from diagnose.signals.time_scales import TimeScales
 from solve.materials.parameters import VACUUM_PERMITTIVITY, Material, PiezoelectricFilm
 from solve.mechanisms.base import BONDS, CHANNELS
 from solve.model import Model, Readout
@@ -14,14 +15,25 @@ from solve.model import Model, Readout
 if TYPE_CHECKING:
     from diagnose.engines.coupon.point import MaterialPoint
 
+FORCE, VOLTAGE, PATH = "force_N", "voltage_V", "displacement_mm"
+
+
+def shown_answers(recording: Recording) -> frozenset[tuple[Drive, str]]:
+    """(drive, kind of answer) of all that was recorded: voltage_2_V is a voltage_V."""
+    return frozenset(
+        (run.drive, VOLTAGE if name.startswith("voltage") else name) for run in recording.runs for name in run.answers
+    )
+
 
 @dataclass(frozen=True)
 class Scene:
     """model : as rig.toml has it, declared mechanisms switched on.
 
     readouts : the amplifier of each run. depth_mm : deepest press. force_N, voltage_V : largest recorded; 0 where none
-    was. step_s, duration_s : sampling step and length of the runs. channels : electrodes, each with an
-    amplifier. mains_Hz : of the hum, one per run its share. share : of the film that it speaks of.
+    was. scales : time scales of the drives. channels : electrodes, each with an amplifier. mains_Hz : of the hum, one
+    per run its share. share : of the film that it speaks of. shown : (drive, kind of answer) of what was recorded.
+    places : of the dot in the runs, in mm from where the model has it. strain_pC : largest charge of the strain; 0
+    where that is not known.
     """
 
     model: Model
@@ -29,11 +41,27 @@ class Scene:
     depth_mm: float
     force_N: float
     voltage_V: float
-    step_s: float
-    duration_s: float
+    scales: TimeScales
     channels: int = 1
     mains_Hz: float = 50.0
     share: float = 1.0
+    shown: frozenset[tuple[Drive, str]] = frozenset({("displacement_mm", FORCE), ("displacement_mm", VOLTAGE)})
+    places: tuple[tuple[float, float], ...] = ((0.0, 0.0),)
+    strain_pC: float = 0.0
+
+    def shows(self, answer: str, *drives: Drive) -> bool:
+        """Whether an answer of this kind was recorded under one of these drives; under any if none is given."""
+        return any(kind == answer and (drive in drives or not drives) for drive, kind in self.shown)
+
+    @property
+    def voltage_shown(self) -> bool:
+        """Whether any voltage was recorded: without, nothing electrical shows."""
+        return self.shows(VOLTAGE)
+
+    @property
+    def path_shown(self) -> bool:
+        """Whether the path of the rig's sensor counts: where it drives, and where it answers."""
+        return any(drive == PATH for drive, _ in self.shown) or self.shows(PATH)
 
     @property
     def bonds(self) -> tuple[str, ...]:
@@ -48,14 +76,19 @@ class Scene:
 
     @property
     def voltage_mode(self) -> bool:
-        """Whether any amplifier is no charge amplifier: only there does the input's impedance count."""
-        return any(readout.mode == "voltage" for readout in self.readouts)
+        """Whether a voltage was recorded behind no charge amplifier: only there does the input's impedance count."""
+        return self.voltage_shown and any(readout.mode == "voltage" for readout in self.readouts)
 
     @property
     def capacitance_pF(self) -> float:
         """Of film and input together, the least of the runs."""
         inputs = [readout.input_capacitance_pF for readout in self.readouts if readout.mode == "voltage"]
         return self.share * film_capacitance_pF(self.model) + min(inputs, default=0.0)
+
+    @property
+    def charge_pC(self) -> float:
+        """The largest charge of the strain; that of the largest voltage where it is not known."""
+        return self.strain_pC or self.capacitance_pF * (self.voltage_V or 1.0)
 
     @property
     def of_each_channel(self) -> "Scene":
@@ -76,7 +109,7 @@ class Scene:
     def conductance_uS(self) -> float:
         """Of the input, the least of the runs, and what discharges film and input within a run, together."""
         given = [1.0 / r.input_resistance_MOhm if r.input_resistance_MOhm else 0.0 for r in self.readouts]
-        return min(given) + 1e-6 * self.capacitance_pF / self.duration_s
+        return min(given) + 1e-6 * self.capacitance_pF / self.scales.lasting_s
 
 
 @dataclass(frozen=True)

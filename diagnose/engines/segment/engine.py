@@ -27,8 +27,9 @@ from diagnose.engines.segment.stated_mechanisms import (
 )
 from diagnose.forward import Candidate, Setting, Signals
 from diagnose.signals.recording import Recording, Run
+from diagnose.signals.time_scales import time_scales
 from diagnose.vocabulary.base import candidates_of_segment
-from diagnose.vocabulary.scene import Scene
+from diagnose.vocabulary.scene import Scene, shown_answers
 from foundation.arrays import Floats
 from foundation.executor import HERE, Executor
 from foundation.progress import Report
@@ -88,6 +89,11 @@ class SegmentEngine:
         """Prepared presses for the position of the dot in the first run."""
         return self.dot_positions.presses_at(self.recording.runs[0].dot_offset_mm)[0]
 
+    @property
+    def channels(self) -> int:
+        """Electrodes, each with an amplifier."""
+        return max(1, len(self.model.segment.film.electrodes))
+
     @cached_property
     def scene(self) -> Scene:
         """Scene of the recording, on which the candidates depend."""
@@ -99,9 +105,11 @@ class SegmentEngine:
             depth_mm=self.first_presses.pressed_mm,
             force_N=float(self.first_presses.fit.table[-1, 0, 0]),
             voltage_V=max((float(np.abs(v).max()) for v in values if len(v)), default=0.0),
-            step_s=min(run.step_s for run in runs),
-            duration_s=max(float(run.time_s[-1] - run.time_s[0]) for run in runs),
-            channels=max(1, len(self.model.segment.film.electrodes)),
+            scales=time_scales(self.recording),
+            channels=self.channels,
+            shown=shown_answers(self.recording),
+            strain_pC=1e12 * float(np.abs(self.first_presses.fit.table[-1, 0, 2 : 2 + self.channels]).max()),
+            places=tuple(dict.fromkeys(run.dot_offset_mm for run in runs)),
         )
 
     @property

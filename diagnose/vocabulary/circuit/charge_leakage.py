@@ -28,7 +28,7 @@ def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidat
 
 def _leakage(scene: Scene, component: str) -> Candidate:
     """Conductance. At most, the charge is gone within one sample."""
-    scale, most = scene.conductance_uS, 1e-6 * scene.capacitance_pF / scene.step_s
+    scale, most = scene.conductance_uS, 1e-6 * scene.capacitance_pF / scene.scales.step_s
     top = max(most, 100.0 * scale)
     coordinate = growing("conductance", scale, top, (0.3 * scale, 3.0 * scale, sqrt(scale * top)))
 

@@ -34,8 +34,8 @@ def _low_pass(scene: Scene, component: str) -> Candidate:
     D is the delay of what changes slowly, whatever k and d: from what one sample shows to the length of a run. k = 0
     is one RC stage, 1/3 Bessel's filter, 1/2 Butterworth's; a share d of the delay is dead time in higher orders.
     """
-    scale = 2.0 * scene.step_s
-    time = growing("time_constant", scale, scene.duration_s, (scale, 10.0 * scale, 100.0 * scale))
+    scale = 2.0 * scene.scales.step_s
+    time = growing("time_constant", scale, scene.scales.lasting_s, (scale, 10.0 * scale, 100.0 * scale))
     second = Coordinate("second_order", 0.0, SHARPEST, (0.25, 0.5))
     dead = Coordinate("dead_time", 0.0, DEAD, (0.2,))
 

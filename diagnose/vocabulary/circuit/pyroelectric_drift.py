@@ -29,9 +29,9 @@ def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidat
 def _heat(scene: Scene) -> Candidate:
     """A step of either sign; its time from a few samples to a few runs."""
     declared = like(scene.model.physics.added, Pyroelectric())
-    base = declared.time_constant_s if declared.temperature_step_K != 0.0 else min(1.0, 0.3 * scene.duration_s)
+    base = declared.time_constant_s if declared.temperature_step_K != 0.0 else min(1.0, 0.3 * scene.scales.lasting_s)
     step = Coordinate("temperature_step_K", -HOTTEST_K, HOTTEST_K, (0.1, -0.1))
-    fastest, slowest = log(5.0 * scene.step_s / base), log(5.0 * scene.duration_s / base)
+    fastest, slowest = log(5.0 * scene.scales.step_s / base), log(5.0 * scene.scales.lasting_s / base)
     time = Coordinate("log_time", min(fastest, -1.0), max(slowest, 1.0), (-1.5, 1.0))
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:

@@ -1,15 +1,16 @@
 """Viscoelasticity of a layer or a declared compliant bond: Prony branches at fixed times, shifted together."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import exp, log, log10
 from typing import Any
 
 import numpy as np
 
-from diagnose.engines.coupon.relaxation_spectrum import LARGEST_MODULUS_RATIO, relaxation_times
+from diagnose.engines.coupon.relaxation_spectrum import LARGEST_MODULUS_RATIO, relaxation_times, shortest_time_s
 from diagnose.engines.coupon.tested_layer import LAYER, SPECIMEN, PartOfLayer
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
+from diagnose.signals.time_scales import TimeScales, time_scales
 from diagnose.vocabulary.base import REMEMBERS, Vocabulary, register
 from diagnose.vocabulary.scene import CouponScene, Scene
 from solve.materials.prony import Prony
@@ -38,14 +39,16 @@ def of_segment(scene: Scene) -> Iterator[Candidate]:
 def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
     """The specimen, two branches a decade; rubber flows, but for a share that is fitted."""
     shares = () if scene.point.law.compressible else (LINEAR,)
-    times = relaxation_times(scene.recording, len(shares))
-    yield spectrum(PartOfLayer, SPECIMEN, times, LARGEST_MODULUS_RATIO, shares)
+    scales = time_scales(scene.recording)
+    branches = branches_at(relaxation_times(scales, len(shares)), scales, LARGEST_MODULUS_RATIO)
+    yield spectrum(PartOfLayer, SPECIMEN, branches, shares)
 
 
 def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidate]:
     """Whatever medium strains the film, and the film."""
-    times = relaxation_times(recording)
-    yield from (spectrum(Candidate, component, times, MOST_OF_SENSOR) for component in (LAYER, "film"))
+    scales = time_scales(recording)
+    branches = branches_at(relaxation_times(scales), scales, MOST_OF_SENSOR)
+    yield from (spectrum(Candidate, component, branches) for component in (LAYER, "film"))
 
 
 def relaxable(model: Model) -> tuple[str, ...]:
@@ -60,13 +63,14 @@ def _candidate(scene: Scene, component: str, declared: Prony) -> Candidate:
     """BRANCHES branches by their moduli over what never relaxes, and one shift of all their times.
 
     At fixed times the answer is linear in small moduli. The shift, half the spacing to either side, lets one branch
-    alone have any time; several together take the form of any spectrum. What relaxes faster than all of them shows
-    about as the fastest does. What rig.toml declares stays beside them.
+    alone have any time; several together take the form of any spectrum. At one end of it they stand where they do at
+    the other, each in the place of its neighbour. What relaxes faster than all of them shows about as the fastest does.
+    What rig.toml declares stays beside them.
     """
-    times, reach = _branch_times(scene.step_s, scene.duration_s)
+    times, reach = _branch_times(scene.scales)
     free = 1.0 - sum(declared.relative_moduli)
     moduli = tuple(Coordinate(f"modulus_{n + 1}", 0.0, MOST, (0.1, 0.5)) for n in range(BRANCHES))
-    shift = Coordinate("log_time", -reach, reach, (-0.5 * reach, 0.5 * reach), levels_off=(True, False))
+    shift = Coordinate("log_time", -reach, reach, (-0.5 * reach, 0.5 * reach), levels_off=(True, True))
 
     def series(values: Sequence[float]) -> tuple[list[float], list[float]]:
         ratios = np.asarray(values[:BRANCHES])
@@ -85,13 +89,13 @@ def _candidate(scene: Scene, component: str, declared: Prony) -> Candidate:
     return Candidate(VISCOELASTICITY.name, component, (*moduli, shift), parameters, derived, units)
 
 
-def _branch_times(step_s: float, duration_s: float) -> tuple[list[float], float]:
+def _branch_times(scales: TimeScales) -> tuple[list[float], float]:
     """Times of the branches, evenly in the logarithm, and half their spacing.
 
-    Together they span what a run shows, and LATE_S: without a branch that slow, the relaxed fraction of a material that
-    goes on relaxing after the last hold would be too low, and too sure.
+    Together they span what the runs show, and LATE_S: without a branch that slow, the relaxed fraction of a material
+    that goes on relaxing after the last hold would be too low, and too sure.
     """
-    low, high = log10(FEWEST_SAMPLES * step_s), log10(max(duration_s, LATE_S))
+    low, high = log10(shortest_time_s(scales, FEWEST_SAMPLES)), log10(max(scales.lasting_s, LATE_S))
     spacing = max((high - low) / BRANCHES, 0.1)
     middle = 0.5 * (low + high)
     times = [10.0 ** (middle + spacing * (n - 0.5 * (BRANCHES - 1))) for n in range(BRANCHES)]
@@ -105,15 +109,29 @@ def relaxed_fraction(relative_moduli: Sequence[float], relaxation_times_s: Seque
     return 1.0 - late / early
 
 
+def branches_at(times_s: Sequence[float], scales: TimeScales, most: float) -> dict[float, Coordinate]:
+    """Time in s -> coordinate E_i / E_inf of a branch, up to most.
+
+    What is slower than the longest run never comes to rest in it, so that nobody knows E_inf: near the end of its range
+    more of it changes nothing.
+    """
+    found = {}
+    for time in times_s:
+        slow = time >= scales.lasting_s
+        high = LARGEST_MODULUS_RATIO if slow else most
+        found[time] = Coordinate(f"modulus_at_{time:.3g}_s", 0.0, high, (0.1, 0.5), levels_off=(False, slow))
+    return found
+
+
 def spectrum(
-    make: type[Candidate], component: str, times_s: Sequence[float], most: float, shares: tuple[Coordinate, ...] = ()
+    make: type[Candidate], component: str, branches: Mapping[float, Coordinate], shares: tuple[Coordinate, ...] = ()
 ) -> Candidate:
-    """The candidate at a component, one coordinate a branch; most : of each E_i / E_inf.
+    """The candidate at a component, one coordinate a branch by its time.
 
     make : its class. shares : the share of the branches that does not flow, where the rest does; none where nothing
     does.
     """
-    count = len(times_s)
+    count, times_s = len(branches), tuple(branches)
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
         moduli, times = _branches(values[:count], times_s)
@@ -123,9 +141,8 @@ def spectrum(
     def derived(values: Sequence[float]) -> dict[str, float]:
         return {"relaxed_fraction": relaxed_fraction(*_branches(values[:count], times_s))}
 
-    branches = tuple(Coordinate(f"modulus_at_{time:.3g}_s", 0.0, most, (0.1, 0.5)) for time in times_s)
     units = {"relative_moduli": "", "relaxation_times_s": "s", "flowing_share": "", "relaxed_fraction": ""}
-    return make(VISCOELASTICITY.name, component, (*branches, *shares), parameters, derived, units)
+    return make(VISCOELASTICITY.name, component, (*branches.values(), *shares), parameters, derived, units)
 
 
 def _branches(values: Sequence[float], times_s: Sequence[float]) -> tuple[list[float], list[float]]:

@@ -11,6 +11,7 @@ from diagnose.engines.coupon.improved_material import improved_material
 from diagnose.engines.coupon.relaxation_spectrum import relaxation_times
 from diagnose.forward import Setting
 from diagnose.signals.recording import Recording
+from diagnose.signals.time_scales import time_scales
 from diagnose.vocabulary.layers.viscoelasticity import LINEAR
 from foundation.errors import InputError
 from softdot.config.loading import config_from
@@ -89,7 +90,7 @@ def test_a_staircase_is_as_quick_as_its_steps():
         made.append(
             replace(one, time_s=time, channels=channels, valid=there, saturated={n: ~f for n, f in there.items()})
         )
-    shortest = [relaxation_times(Recording((one,), specimen()))[0] for one in made]
+    shortest = [relaxation_times(time_scales(Recording((one,), specimen())))[0] for one in made]
     assert shortest[0] == pytest.approx(shortest[1], rel=0.3)
 
 
@@ -101,7 +102,7 @@ def test_branches_at_fixed_times_meet_a_material_with_any_one_time():
     channels = {"displacement_mm": pulled, "force_N": 0.5 * pulled}
     none = {name: ~flags for name, flags in there.items()}
     one = replace(run(), time_s=time, channels=channels, valid=there, saturated=none)
-    times = relaxation_times(Recording((one,), specimen()))
+    times = relaxation_times(time_scales(Recording((one,), specimen())))
     faded = np.exp(-time[:, None] / np.array([np.inf, *times]))
     for tau in np.geomspace(times[0], times[-1], 25):
         missed = nnls(faded, np.exp(-time / tau))[1] / np.sqrt(len(time))

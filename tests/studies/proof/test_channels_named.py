@@ -11,6 +11,7 @@ import pytest
 from diagnose.engines.segment.drive import model_drive
 from diagnose.engines.segment.response import FilmPlate, Mechanics, channel_signals
 from diagnose.inference.diagnose import diagnose
+from diagnose.signals.time_scales import time_scales
 from diagnose.vocabulary.base import candidates_of_segment
 from diagnose.vocabulary.scene import Scene
 from softdot.config.model import model_of
@@ -40,7 +41,9 @@ class Known:
 
     def __init__(self, rig, among):
         self.recording, self.model = rig.recording, model_of(rig.config)
-        scene = Scene(self.model, tuple(r.readout for r in rig.recording.runs), 0.25, 4.0, 25.0, 0.004, 6.0, 3)
+        scene = Scene(
+            self.model, tuple(r.readout for r in rig.recording.runs), 0.25, 4.0, 25.0, time_scales(rig.recording), 3
+        )
         behind = [c for c in candidates_of_segment(scene) if c.traits.electrical and c.traits.acts_on_tables]
         self.candidates = tuple(c for c in behind if not among or c.mechanism in among)
         self.film = FilmPlate(1e-12 * np.column_stack([BENCH.made.capacitances_pF, np.full(3, 23e6)]), 30.0)
