@@ -9,6 +9,11 @@ from foundation.arrays import Floats
 from foundation.progress import Report
 from solve.mechanisms import Mechanism, Traits, traits_of
 
+
+class NoAnswerError(ValueError):
+    """A trial to which a forward model has no answer: it is rejected, whoever made it."""
+
+
 Signals = Mapping[str, Floats]
 """Channel -> samples (t,) of one run, named as in the recording."""
 
@@ -43,6 +48,8 @@ class Candidate:
     units : name of a parameter or derived quantity -> unit in the verdict.
     everyday : name of a parameter or derived quantity -> what a careful laboratory has of it: no finding.
     stated_as : nuisance parameter by which rig.toml says how uncertain it is, such as "offset_mm"; "" for none.
+    identical_to : names of what would be the very same element of the model, and is no candidate of its own.
+    either_sign : parameters whose sign nobody can tell, as the rig is its own mirror image: told without one.
     """
 
     mechanism: str
@@ -55,6 +62,8 @@ class Candidate:
     together: str = "sum"
     everyday: Mapping[str, float] = field(default_factory=dict)
     stated_as: str = ""
+    identical_to: tuple[tuple[str, str], ...] = ()
+    either_sign: tuple[str, ...] = ()
 
     @property
     def traits(self) -> Traits:
@@ -154,6 +163,8 @@ class Engine(Protocol):
 
 class SolvedOutright:
     """Base of engines whose every prediction is solved, in milliseconds: nothing is prepared or refined."""
+
+    solves_outright = True
 
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
         """Do nothing."""

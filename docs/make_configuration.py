@@ -1,8 +1,8 @@
 """Make the tables of the documents from the configuration schema and from the data tables of the program.
 
 Run ``python docs/make_configuration.py`` at the top of the repository after a key, a material or a Braille
-standard has changed. It writes the marked blocks of docs/configuration.md, docs/geometry.md, docs/kit_parts.md,
-docs/limits.md and docs/mechanisms.md; tests/softdot/test_docs.py fails while they are out of step.
+standard has changed. It writes the marked blocks of docs/candidates.md, docs/configuration.md, docs/geometry.md,
+docs/kit_parts.md, docs/limits.md and docs/mechanisms.md; tests/softdot/test_docs.py fails while they are out of step.
 """
 
 import re
@@ -15,6 +15,7 @@ from typing import Any
 DOCS = Path(__file__).resolve().parent
 sys.path.insert(0, str(DOCS.parent))  # the rooms of this repository, whatever is installed
 
+from docs.make_candidates import candidate_table  # noqa: E402
 from geometry.braille_standards import QUANTITIES, Quantity, standard, standard_names  # noqa: E402
 from geometry.fabrication.parameters import (  # noqa: E402
     Fabrication,
@@ -250,6 +251,7 @@ def table_of_nothing() -> str:
 
 
 BLOCKS: dict[str, tuple[str, Callable[[], str]]] = {
+    "candidates.md": ("table of candidates", candidate_table),
     "configuration.md": ("tables of keys", tables_of_keys),
     "geometry.md": ("Braille table", braille_table),
     "kit_parts.md": ("casting table", casting_table),

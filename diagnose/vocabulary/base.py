@@ -8,6 +8,7 @@ from pkgutil import walk_packages
 
 from diagnose.forward import Candidate, Setting
 from diagnose.signals.recording import Recording
+from diagnose.vocabulary.aliases import without_aliases
 from diagnose.vocabulary.scene import CouponScene, Scene
 from solve.mechanisms.base import MechanismType
 
@@ -78,8 +79,13 @@ def _discover() -> None:
 
 
 def candidates_of_segment(scene: Scene) -> tuple[Candidate, ...]:
-    """Every mechanism and component that the rig admits."""
-    return tuple(one for entry in vocabulary().values() for one in entry.of_segment(scene))
+    """Every mechanism and component that the rig admits; nothing electrical where no voltage was recorded."""
+    found = (one for entry in vocabulary().values() for one in entry.of_segment(scene))
+    return without_aliases(scene.model, (c for c in found if scene.voltage_shown or not _acts_on_charge_alone(c)))
+
+
+def _acts_on_charge_alone(one: Candidate) -> bool:
+    return one.traits.electrical or one.traits.charge_alone
 
 
 def candidates_of_coupon(scene: CouponScene) -> tuple[Candidate, ...]:
@@ -89,4 +95,5 @@ def candidates_of_coupon(scene: CouponScene) -> tuple[Candidate, ...]:
 
 def candidates_of_unknown_geometry(scene: Scene, recording: Recording) -> tuple[Candidate, ...]:
     """Every mechanism that shows whatever the geometry."""
-    return tuple(one for entry in vocabulary().values() for one in entry.of_unknown_geometry(scene, recording))
+    found = (one for entry in vocabulary().values() for one in entry.of_unknown_geometry(scene, recording))
+    return without_aliases(scene.model, found)

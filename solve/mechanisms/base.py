@@ -66,7 +66,7 @@ class Traits:
     """Properties of a mechanism that others ask for in place of its name.
 
     adds_up : several at one component have one meaning, as their effects add up, multiply or stand in series.
-    electrical : it acts behind the film alone.
+    electrical : it acts behind the film alone. charge_alone : it is charge of the film, and moves nothing.
     memory : the answer depends on time or on the path; path_dependent : on the path at whatever speed.
     shows_on_return : only a dot that returns shows it in full.
     unsymmetric : its tangent is not symmetric. changes_geometry : sizes, places or shapes differ.
@@ -80,6 +80,7 @@ class Traits:
 
     adds_up: bool = False
     electrical: bool = False
+    charge_alone: bool = False
     memory: bool = False
     path_dependent: bool = False
     shows_on_return: bool = False

@@ -54,7 +54,7 @@ HOMES = (
 EXAMPLES = tomllib.loads((ROOT / "docs" / "configuration_examples.toml").read_text("utf-8"))
 
 
-@for_each("file", ["configuration.md", "geometry.md", "kit_parts.md", "mechanisms.md"])
+@for_each("file", ["candidates.md", "configuration.md", "geometry.md", "kit_parts.md", "mechanisms.md"])
 def test_generated_text_is_in_step(file):
     assert (ROOT / "docs" / file).read_text("utf-8") == maker.pages()[file]
 

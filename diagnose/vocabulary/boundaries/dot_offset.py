@@ -1,35 +1,59 @@
-"""The dot stands elsewhere."""
+"""The dot stands elsewhere: as far aside as half of its contact stays over the segment."""
 
 from collections.abc import Iterator, Sequence
+from math import sqrt
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
 from diagnose.vocabulary.base import Vocabulary, register
 from diagnose.vocabulary.scene import Scene
+from geometry.dot_size import dot_size
 from solve.mechanisms.boundaries.dot_offset import DOT_OFFSET
 
-ASIDE = 0.16  # of the segment's size: 0.4 mm of 2.5, by hand 0.1 to 0.3
+NODES = 0.35, 0.7, 1.0  # of the way to the side
+BY_HAND_MM = 0.15, 0.4  # 0.1 to 0.3 by hand
+LEAST_REACH = 0.04  # of the segment, for a dot that stands at its side already
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of any dot."""
-    yield _offset(scene)
+    """Of any dot but a plate, which has no middle."""
+    if scene.model.dot.shape != "plate":
+        yield _offset(scene)
 
 
 def _offset(scene: Scene) -> Candidate:
-    segment = scene.model.segment
-    sizes = {"x": segment.length_mm, "y": segment.width_mm}
-    axes = ("x", "y") if segment.section == "solid" else ("x",)
-    coordinates = tuple(_aside(f"offset_{axis}_mm", ASIDE * sizes[axis]) for axis in axes)
+    """Along x, and of a solid along y; to one side only where the rig is the same on both."""
+    axes = (0, 1) if scene.model.segment.section == "solid" else (0,)
+    coordinates = tuple(_aside(scene, axis) for axis in axes)
+    either = ("offset_mm",) if all(coordinate.low == 0.0 for coordinate in coordinates) else ()
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
         return {"offset_mm": (*values, 0.0)[:2]}
 
-    return Candidate(DOT_OFFSET.name, "dot", coordinates, parameters, units={"offset_mm": "mm"})
+    return Candidate(DOT_OFFSET.name, "dot", coordinates, parameters, units={"offset_mm": "mm"}, either_sign=either)
 
 
-def _aside(name: str, most: float) -> Coordinate:
-    return Coordinate(name, -most, most, (0.3 * most, -0.3 * most), (-most, -0.5 * most, 0.5 * most, most))
+def _aside(scene: Scene, axis: int) -> Coordinate:
+    segment = scene.model.segment
+    size = (segment.length_mm, segment.width_mm)[axis]
+    reach = 0.5 * size - 0.5 * sqrt(min(dot_size(scene.model.dot).radius_mm, size) * scene.depth_mm)  # Hertz
+    at = [scene.model.dot.offset_mm[axis] + place[axis] for place in scene.places]
+    low, high = min(-reach - min(at), -LEAST_REACH * size), max(reach - max(at), LEAST_REACH * size)
+    name, starts = f"offset_{'xy'[axis]}_mm", [min(start, high) for start in BY_HAND_MM]
+    if _is_symmetric(scene, axis):
+        return Coordinate(name, 0.0, high, tuple(starts), tuple(share * high for share in NODES))
+    nodes = *(share * low for share in NODES), *(share * high for share in NODES)
+    return Coordinate(name, low, high, (starts[0], max(-BY_HAND_MM[0], low)), nodes)
+
+
+def _is_symmetric(scene: Scene, axis: int) -> bool:
+    """Whether a dot that much to one side presses as one that much to the other, in every run."""
+    film = scene.model.segment.film
+    centred = [scene.model.dot.offset_mm[axis], *(place[axis] for place in scene.places)]
+    centred += [electrode.center_mm[axis] for electrode in film.electrodes]
+    centred += [patch.center_mm[axis] for patch in scene.model.physics.delaminations]
+    upright = not any(scene.model.dot.tilt_deg) and scene.model.dot.cell is None
+    return not any(centred) and upright and film.draw_angle_deg % 90.0 == 0.0
 
 
 register(Vocabulary(DOT_OFFSET, "{} is not where rig.toml places it", of_segment=of_segment))

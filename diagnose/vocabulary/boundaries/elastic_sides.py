@@ -1,4 +1,4 @@
-"""Compliance of held sides, or another stiffness of declared springs."""
+"""Compliance of held sides, another stiffness of declared springs, or something that free sides lean on."""
 
 from collections.abc import Iterator, Sequence
 from math import asinh, exp, log, sinh
@@ -13,14 +13,19 @@ from solve.mechanisms.boundaries.elastic_sides import ELASTIC_SIDES
 STIFF_SIDE_N_PER_MM3 = 3000.0  # the ends of a film of PVDF, a few mm long, begin to move
 SOFTEST_SIDE_N_PER_MM3 = 0.5  # rubber of 1 MPa, 2 mm thick
 SIDES = 50.0  # factor either way on declared springs
+LEAST_SIDE_N_PER_MM3 = 0.02  # a foam of 50 kPa, 2.5 mm thick
+NODES = 0.18, 0.31, 0.42, 0.55, 0.69, 0.84, 1.0  # of the way from free to held
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Where the segment is held."""
-    if scene.model.segment.boundary == "clamped":
+    """Whatever rig.toml says of the sides."""
+    segment = scene.model.segment
+    if segment.boundary == "clamped":
         yield _soft_sides()
-    if scene.model.segment.boundary == "elastic":
-        yield _other_sides(scene.model.segment.side_stiffness_N_per_mm3)
+    elif segment.boundary == "elastic":
+        yield _other_sides(segment.side_stiffness_N_per_mm3)
+    else:
+        yield _leaning_sides()
 
 
 def _soft_sides() -> Candidate:
@@ -33,6 +38,19 @@ def _soft_sides() -> Candidate:
         return {"stiffness_N_per_mm3": shrinking(STIFF_SIDE_N_PER_MM3, sinh(values[0]))}
 
     return Candidate(ELASTIC_SIDES.name, "sides", (coordinate,), parameters, units={"stiffness_N_per_mm3": "N/mm3"})
+
+
+def _leaning_sides() -> Candidate:
+    """Stiffness of what is declared as free, up to sides that are as good as clamped."""
+    scale, units = LEAST_SIDE_N_PER_MM3, {"stiffness_N_per_mm3": "N/mm3"}
+    most = asinh(STIFF_SIDE_N_PER_MM3 / scale)
+    nodes = tuple(share * most for share in NODES)
+    coordinate = Coordinate("stiffness", 0.0, most, (0.15 * most, 0.4 * most), nodes, levels_off=(False, True))
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        return {"stiffness_N_per_mm3": scale * sinh(values[0])}
+
+    return Candidate(ELASTIC_SIDES.name, "sides", (coordinate,), parameters, units=units)
 
 
 def _other_sides(declared: float) -> Candidate:

@@ -5,29 +5,33 @@ in them, and the best sum of two neighbours differs from a slider in between by 
 """
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from diagnose.engines.coupon.tested_layer import SPECIMEN
 from diagnose.forward import Candidate, Coordinate
 from diagnose.vocabulary.base import REMEMBERS, Vocabulary, register
-from diagnose.vocabulary.scene import CouponScene, Scene
+from diagnose.vocabulary.scene import FORCE, CouponScene, Scene
 from solve.mechanisms.boundaries.guide_friction import GUIDE_FRICTION
+from solve.mechanisms.circuit.hysteresis import HYSTERESIS
 
 TRAVELS = tuple(10.0 ** (0.5 * n - 3.0) for n in range(6))  # of the largest travel, where a slider slips
 MOST, EVERYDAY = 1.5, 0.003  # of the largest force; the latter any tester has (rule of thumb)
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Where a force was recorded, which alone shows it."""
-    if scene.force_N > 0.0:
+    """Where a force answers, which alone shows it: of one that drives nobody knows what a guide takes."""
+    if scene.shows(FORCE):
         yield _guide(scene.force_N, scene.depth_mm)
 
 
 def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
     """Where a displacement drives: of a force that drives nobody knows what a guide takes."""
     if all(run.drive == "displacement_mm" for run in scene.recording.runs):
-        yield _guide(scene.force_N, scene.travel_mm)
+        same = (HYSTERESIS.name, SPECIMEN)  # of the specimen itself, by plays of its strain
+        yield replace(_guide(scene.force_N, scene.travel_mm), identical_to=(same,))
 
 
 def _guide(force_N: float, travel_mm: float) -> Candidate:

@@ -7,18 +7,19 @@ from typing import Any
 from diagnose.forward import Candidate
 from diagnose.vocabulary.base import Vocabulary, register
 from diagnose.vocabulary.scales import growing
-from diagnose.vocabulary.scene import CouponScene, Scene
+from diagnose.vocabulary.scene import FORCE, CouponScene, Scene
 from solve.mechanisms.boundaries.inertia import INERTIA
 from solve.physics import like
 from solve.terms.inertia import MovingMass
 
 MASS_G, GRIP_G = 5.0, 50.0  # of a small dot, and of a clip
-HEAVIEST_G = 20_000.0  # the grips, or the crosshead, of a large tester, which may press a segment too
+HEAVIEST_G = 200_000.0  # the crosshead, or the carriage of a linear motor, which may press a segment too
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of any rig."""
-    yield _mass(scene)
+    """Where a force answers, or drives what moves."""
+    if scene.shows(FORCE) or any(drive == FORCE for drive, _ in scene.shown):
+        yield _mass(scene)
 
 
 def of_coupon(scene: CouponScene) -> Iterator[Candidate]:

@@ -16,8 +16,9 @@ MOST_OF_TRAVEL = 0.25  # a tester that takes more than a quarter of the travel i
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of any rig."""
-    yield _compliance(scene)
+    """Of any rig whose path was recorded."""
+    if scene.path_shown:
+        yield _compliance(scene)
 
 
 def of_coupon(scene: CouponScene) -> Iterator[Candidate]:

@@ -15,7 +15,7 @@ from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
 from diagnose.vocabulary.base import STIFFNESS, Vocabulary, register
 from diagnose.vocabulary.scene import CouponScene, Scene
-from solve.materials.parameters import Hyperfoam, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
+from solve.materials.parameters import Hyperfoam, Knowles, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
 from solve.mechanisms import Mechanism, with_mechanisms
 from solve.mechanisms.base import MEDIA
 from solve.mechanisms.layers.hyperelastic_stiffening import HYPERELASTIC_STIFFENING
@@ -23,6 +23,7 @@ from solve.mechanisms.layers.hyperelastic_stiffening import HYPERELASTIC_STIFFEN
 HIGHEST = float(np.log1p(30.0))  # a slope of dW/dI1 of 30 at rest: soft tissue reaches it, no rubber does
 EXPONENTIAL = 0.01  # of 1 / (n - 1), below which the law is as good as exponential
 NEXT_TO_NOTHING = 1e-9  # of b, which is above 0 where the mechanism is on: where a fit ends at a slope of 0
+SOONEST = 100.0  # of b
 STEEP = 8.0  # exponent of the Ogden term that stiffens
 
 
@@ -32,6 +33,8 @@ def of_segment(scene: Scene) -> Iterator[Candidate]:
         material = scene.model.materials.get(component)
         if isinstance(material, NeoHookean):
             yield _knowles(component)
+        elif isinstance(material, Knowles):
+            yield _steeper_knowles(component, material)
         elif isinstance(material, Yeoh):
             yield _yeoh(component, material)
         elif isinstance(material, MooneyRivlin | Ogden):
@@ -78,6 +81,17 @@ def _knowles(component: str) -> Candidate:
         return {"b": b, "n": 1.0 + 1.0 / inverse} if inverse > EXPONENTIAL else {"b": b}
 
     return _of_layer(component, coordinates, parameters, {"b": "", "n": ""}, "fading")
+
+
+def _steeper_knowles(component: str, material: Knowles) -> Candidate:
+    """Logarithm of the factor on b, how soon the declared law stiffens; its exponent stays."""
+    coordinate = Coordinate("log_b", -HIGHEST, HIGHEST, (0.3, -0.3), (-HIGHEST, -0.4 * HIGHEST, 0.4 * HIGHEST, HIGHEST))
+    stays = {"c10_MPa": material.c10_MPa} | ({} if material.n is None else {"n": material.n})
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        return {**stays, "b": min(material.b * float(np.exp(values[0])), SOONEST)}
+
+    return _of_layer(component, (coordinate,), parameters, {"c10_MPa": "MPa", "b": "", "n": ""})
 
 
 def _yeoh(component: str, material: Yeoh) -> Candidate:

@@ -36,6 +36,6 @@ CONTACT_ELECTRIFICATION = register(
             "charge_pC": "0.1 to 10 times the signal with an input of gigaohms (rule of thumb); either sign",
             "area_exponent": "1: every spot touched is charged alike; 0.5 to 2 where pressure matters (rule of thumb)",
         },
-        traits=Traits(acts_on_tables=True),
+        traits=Traits(charge_alone=True, acts_on_tables=True),
     )
 )

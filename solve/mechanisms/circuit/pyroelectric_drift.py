@@ -39,6 +39,6 @@ PYROELECTRIC_DRIFT = register(
             ),
             "time_constant_s": "0.1 to 10 s by the layers between dot and film (rule of thumb); default 1",
         },
-        traits=Traits(memory=True, acts_on_tables=True),
+        traits=Traits(memory=True, charge_alone=True, acts_on_tables=True),
     )
 )

@@ -1,17 +1,22 @@
 """The candidates of a rig: every mechanism and component that it admits, with parameters that a rig file takes."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
+from diagnose.forward import Setting
+from diagnose.signals.time_scales import TimeScales
+from diagnose.vocabulary.aliases import same_physics
 from diagnose.vocabulary.base import candidates_of_segment as candidates
 from diagnose.vocabulary.layers.property_error import nuisance
 from diagnose.vocabulary.layers.viscoelasticity import relaxed_fraction
 from diagnose.vocabulary.scene import Scene
+from docs.make_candidates import ASPECTS, looked_for
 from solve.mechanisms import MECHANISMS, with_mechanisms
-from solve.mechanisms.base import BONDS, MEDIA, channels_of
+from solve.mechanisms.base import BONDS, CHANNELS, MEDIA, channels_of
 from solve.model import Readout
 from solve.readout.stages import Saturation
 from tests.cases import for_each
@@ -21,7 +26,7 @@ ELECTRODES = [{"name": name, "center_mm": [x, 0.0], "size_mm": [1.0, 2.5]} for n
 
 
 def scene(readouts=(LEAKY, LEAKY), channels=1, **tables) -> Scene:
-    return Scene(model(**tables), readouts, 0.3, 2.0, 0.5, 1e-3, 10.0, channels)
+    return Scene(model(**tables), readouts, 0.3, 2.0, 0.5, TimeScales(0.2, 1e-3, 10.0), channels)
 
 
 def segment(**changes):
@@ -46,7 +51,9 @@ def test_a_rig_with_everything_admits_the_whole_vocabulary():
     wanted = {(name, component) for name, kind in MECHANISMS.items() for component in kind.components}
     absent = {("viscoelasticity", bond) for bond in BONDS if bond != "bond-film-medium2"}  # perfect: no jump to relax
     absent |= {(name, one) for name, one in wanted if max(channels_of(one), default=0) > 2}
-    assert names(FULL) == wanted - absent
+    identical = {name for c in candidates(FULL) for name in c.identical_to}
+    assert names(FULL) | identical == wanted - absent
+    assert identical == {("charge-leakage", "film")}
     assert ("crosstalk", "channel-1-channel-2") in names(FULL)
 
 
@@ -64,6 +71,18 @@ def test_without_an_effector_nothing_is_looked_for_in_it():
     assert not any("effector" in component for _, component in names(scene(segment=segment(effector=None))))
 
 
+def test_a_leak_at_the_amplifier_and_one_through_the_film_are_one_element():
+    """They make the same model; the same resistance at one input of two, or another one, does not."""
+    of = {c.name: c for c in candidates(FULL)}
+    leak = of["charge-leakage", "readout"]
+    assert leak.identical_to == (("charge-leakage", "film"),)
+    film = replace(leak, component="film")
+    assert same_physics(FULL.model, Setting(leak, (0.5,)), Setting(film, (0.5,)))
+    assert not same_physics(FULL.model, Setting(leak, (0.5,)), Setting(film, (0.6,)))
+    channel = of["charge-leakage", "channel-1"]
+    assert not same_physics(FULL.model, Setting(leak, (0.5,)), Setting(channel, (0.5,)))
+
+
 def test_what_every_rig_has_a_little_of_is_no_finding():
     """A surface that gives way by 2 um, and 0.3 % of the force as friction, of which 1 % would be one."""
     of = {c.name: c for c in candidates(scene())}
@@ -75,9 +94,65 @@ def test_what_every_rig_has_a_little_of_is_no_finding():
     assert not any(c.is_ordinary([1e-6] * len(c.coordinates)) for c in of.values())
 
 
-def test_sides_that_are_free_have_no_stiffness():
-    assert ("elastic-sides", "sides") not in names(scene(segment=segment(boundary="free")))
-    assert ("elastic-sides", "sides") in names(scene(segment=segment(boundary="elastic")))
+@for_each(("boundary", "softest"), [("clamped", 0.5), ("elastic", 0.1), ("free", 0.0)])
+def test_any_sides_may_have_another_stiffness(boundary, softest):
+    """From free ones on, which lean on nothing, up to those that a film of PVDF takes for a wall."""
+    sides = next(c for c in candidates(scene(segment=segment(boundary=boundary))) if c.mechanism == "elastic-sides")
+    (coordinate,) = sides.coordinates
+    ends = sorted(sides.parameters((x,))["stiffness_N_per_mm3"] for x in (coordinate.low, coordinate.high))
+    assert ends[0] == pytest.approx(softest, abs=1e-6)
+    assert ends[1] > 100.0
+
+
+COMBINED = [
+    dict(zip(ASPECTS, values, strict=True))
+    for values in product(*ASPECTS.values())
+    if not {"plane-strain", "plate"} <= set(values) or "clamped" in values
+]
+
+
+def test_a_rig_has_the_candidates_that_all_its_aspects_have():
+    """So that a table of single aspects tells all: of sides, section, dot, drive, read-out and electrodes."""
+    alone = {(aspect, value): looked_for({aspect: value}) for aspect, values in ASPECTS.items() for value in values}
+    two = alone["electrodes", "2"] - alone["electrodes", "1"]
+    for aspects in COMBINED:
+        brought = two if aspects["electrodes"] == "2" and aspects["readout"] != "none" else set()
+        if aspects["readout"] == "charge":  # at virtual grounds nothing leaks, and no two inputs are tied
+            brought = {one for one in brought if one[0] != "charge-leakage" and one[1] in CHANNELS}
+        plain = [alone[one] for one in aspects.items() if one[0] != "electrodes"]
+        assert looked_for(aspects) == set.intersection(*plain) | brought, aspects
+
+
+@for_each("section", ["solid", "plane-strain"])
+def test_a_dot_is_sought_as_far_aside_as_half_of_its_contact_stays(section):
+    """To one side where the rig is its own mirror image, to both where an electrode, a place or a patch is not."""
+
+    def aside(of):
+        return next(c for c in candidates(of) if c.mechanism == "dot-offset")
+
+    dot = {"shape": "cap" if section == "solid" else "ridge", "radius_mm": 0.9}
+    both = scene(segment=segment(section=section), dot=dot)
+    for coordinate in aside(both).coordinates:
+        assert (coordinate.low, coordinate.high) == (0.0, pytest.approx(1.25 - 0.5 * np.sqrt(0.9 * 0.3)))
+        assert coordinate.high > 0.9  # of a segment of 2.5 mm
+    assert aside(both).either_sign == ("offset_mm",)
+    placed = replace(both, places=((0.0, 0.0), (0.3, 0.0)))
+    x = aside(placed).coordinates[0]
+    assert x.low == pytest.approx(-aside(both).coordinates[0].high)
+    assert x.high == pytest.approx(aside(both).coordinates[0].high - 0.3)
+    turned = scene(segment=segment(section=section, film={"thickness_um": 28.0, "draw_angle_deg": 30.0}), dot=dot)
+    assert aside(placed).either_sign == aside(turned).either_sign == ()
+
+
+def test_a_declared_law_of_knowles_may_stiffen_sooner_or_later():
+    gel = {"model": "knowles", "c10_MPa": 0.05, "b": 3.0, "n": 4.0}
+    of = scene(materials={"vnr": {"model": "neo-hookean", "youngs_modulus_MPa": 5.0}, "gel": gel},
+               segment=segment(medium1={"thickness_mm": 0.5, "material": "gel"}))  # fmt: skip
+    found = {c.name: c for c in candidates(of)}["hyperelastic-stiffening", "medium1"]
+    assert found.parameters((0.0,)) == {"c10_MPa": 0.05, "b": 3.0, "n": 4.0}
+    assert found.parameters((np.log(2.0),))["b"] == pytest.approx(6.0)
+    for end in (found.coordinates[0].low, found.coordinates[0].high):
+        with_mechanisms(of.model, [found.as_mechanism((end,))])
 
 
 def test_a_charge_amplifier_has_no_leaking_input():
