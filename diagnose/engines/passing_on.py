@@ -23,6 +23,11 @@ class DelegatingEngine:
         """Shortfalls of the other engine."""
         return self._engine.shortfalls
 
+    @property
+    def solves_outright(self) -> bool:
+        """Whether nothing that the other engine prepares or refines changes what it says."""
+        return bool(getattr(self._engine, "solves_outright", False))
+
     def nuisance(self, name: str) -> Candidate | None:
         """Candidate of a nuisance, from the other engine."""
         return self._engine.nuisance(name)

@@ -1,5 +1,6 @@
 """Fit of the baseline: nuisances alone, under their priors, from several starts."""
 
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +9,9 @@ from diagnose.fit.linearised_system import LinearisedSystem, linearise
 from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.nuisances import Nuisance, is_on_lagging_clock
 from diagnose.fit.observed_model import ObservedModel
+from diagnose.forward import NoAnswerError
 from foundation.arrays import Bools, Floats
+from solve.solution.errors import NoEquilibriumError
 
 MAX_BASELINE_ITERATIONS = 12
 NEGLIGIBLE_STEP_SIGMAS = 0.01  # posterior standard deviations: another step is not worth it
@@ -21,9 +24,15 @@ CAP_SIGMAS = 4.0  # of a prior: no explanation may pull a nuisance farther
 def fit_baseline(model: ObservedModel) -> LinearisedSystem:
     """System linear about the best nuisances of the baseline.
 
-    They are sought from 0, from aligned lags and from the starts of free ones.
+    They are sought from 0, from aligned lags and from the starts of free ones. NoEquilibriumError where the model has
+    no answer at any of them.
     """
-    systems = [_gauss_newton(model, start) for start in _starting_points(model)]
+    systems = []
+    for start in _starting_points(model):
+        with suppress(NoAnswerError):
+            systems.append(_gauss_newton(model, start))
+    if not systems:
+        raise NoEquilibriumError("the model as rig.toml states it has no answer to these runs", np.zeros(0), None)
     return min(systems, key=lambda system: _misfit(model, system.values, system))
 
 
@@ -91,7 +100,10 @@ def _best_lag_s(model: ObservedModel, nuisance: Nuisance, values: Floats) -> flo
     number = nuisance.run
     assert number is not None
     run = model.runs[number]
-    raw = model.signals(values)[number]
+    try:
+        raw = model.signals(values)[number]
+    except NoAnswerError:
+        return float(values[model.nuisances.index(nuisance)])
     start = float(values[model.nuisances.index(nuisance)])
     grid = start + np.linspace(-3.0, 3.0, LAG_GRID_POINTS) * nuisance.sigma
     own = [b for b in model.samples.blocks if b.run == number and is_on_lagging_clock(run, b.channel)]
@@ -137,7 +149,7 @@ def _misfit(model: ObservedModel, values: Floats, system: LinearisedSystem) -> f
     """
     try:
         predicted = model.vector(values)
-    except ValueError:
+    except NoAnswerError:
         return np.inf
     count = len(values)
     others: Bools = np.arange(system.nuisance_design.shape[1]) >= count

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from numbers import Real
+from typing import Any
 
 import numpy as np
 from scipy.stats import chi2
@@ -18,9 +19,11 @@ from diagnose.fit import discrepancy
 from diagnose.fit.descent import bounds, descent, settings
 from diagnose.fit.levenberg_marquardt import scales
 from diagnose.fit.linearised_system import engine_errors
+from diagnose.fit.nuisances import slope_by_step
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted
-from diagnose.forward import Candidate, Setting
+from diagnose.fit.trials import rejected
+from diagnose.forward import Candidate, NoAnswerError, Setting
 from foundation.arrays import Bools, Floats
 
 INTERVAL_LEVEL = 0.9
@@ -45,7 +48,7 @@ def point_intervals(fit: Fitted) -> tuple[Mapping[str, Interval], ...]:
     return tuple(
         {
             name: Interval(value, value, value, _parameter_unit(one.candidate, name))
-            for name, value in _quantities(one).items()
+            for name, value in _told(one).items()
         }
         for one in fit.settings
     )
@@ -53,7 +56,7 @@ def point_intervals(fit: Fitted) -> tuple[Mapping[str, Interval], ...]:
 
 def _with_law_error(fit: Fitted) -> Fitted:
     """Fit with the model-form error at its largest, where the law is one of several: those have derived quantities."""
-    if not any(one.candidate.derived(one.values) for one in fit.settings):
+    if not any(_derived(one) for one in fit.settings):
         return fit
     return replace(fit, system=replace(fit.system, form_error=fit.largest_form_error))
 
@@ -91,9 +94,8 @@ def _everyday_changes(model: ObservedModel, fit: Fitted, candidate: Candidate) -
     for number, coordinate in enumerate(candidate.coordinates):
         at = np.where(np.arange(count) == number, coordinate.starts[0], 0.0)
         one = Setting(candidate, tuple(at.tolist()))
-        found = _quantities(one)
-        share = min(usual / found[name] for name, usual in candidate.everyday.items())
-        with suppress(ValueError):
+        with suppress(NoAnswerError):
+            share = min(usual / _quantity(one, name) for name, usual in candidate.everyday.items())
             change = model.vector(fit.system.values, [*fit.settings, one]) - without
             yield np.asarray(share / np.sqrt(count) * change)
 
@@ -101,10 +103,10 @@ def _everyday_changes(model: ObservedModel, fit: Fitted, candidate: Candidate) -
 def _mechanism_intervals(model: ObservedModel, fit: Fitted, number: int) -> Mapping[str, Interval]:
     """Profile intervals of one mechanism of a fit, by name of the parameter or derived quantity."""
 
-    def function(name: str) -> Function:  # what a simpler law has no number for is 0: the quality of one RC stage
-        return lambda values: _quantities(settings(fit.candidates, values)[number]).get(name, 0.0)
+    def function(name: str) -> Function:
+        return lambda values: _quantity(settings(fit.candidates, values)[number], name)
 
-    names = _quantities(fit.settings[number])
+    names = _told(fit.settings[number])
     candidate = fit.candidates[number]
     found = {name: _interval(model, fit, function(name), _parameter_unit(candidate, name)) for name in names}
     less = {name: max(found[name].low - usual, 0.0) for name, usual in candidate.everyday.items()}
@@ -116,12 +118,32 @@ def _parameter_unit(candidate: Candidate, name: str) -> str:
     return candidate.units.get(name.partition("[")[0], "")
 
 
-def _quantities(one: Setting) -> dict[str, float]:
-    """Parameters and derived quantities of a setting by name.
+def _derived(one: Setting) -> dict[str, float]:
+    """Derived quantities of a setting, none where the model has no answer to it."""
+    with suppress(NoAnswerError), rejected():
+        return one.candidate.derived(one.values)
+    return {}
 
-    Lists are taken apart: name[0], name[1]; a single value keeps its name.
+
+def _told(one: Setting) -> dict[str, float]:
+    """Parameters, and derived quantities where the model has an answer, of a setting by name."""
+    return _flat({**one.candidate.parameters(one.values), **_derived(one)})
+
+
+def _quantity(one: Setting, name: str) -> float:
+    """A parameter or derived quantity of a setting. NoAnswerError.
+
+    What a simpler law has no number for is 0: the quality of one RC stage.
     """
-    values = {**one.candidate.parameters(one.values), **one.candidate.derived(one.values)}
+    given = _flat(one.candidate.parameters(one.values))
+    if name in given:
+        return given[name]
+    with rejected():
+        return _flat(one.candidate.derived(one.values)).get(name, 0.0)
+
+
+def _flat(values: Mapping[str, Any]) -> dict[str, float]:
+    """Numbers by name, lists taken apart: name[0], name[1]; a single value keeps its name."""
     flat: dict[str, float] = {}
     for name, value in values.items():
         items = list(value) if isinstance(value, list | tuple) else [value]
@@ -157,8 +179,11 @@ def _interval_end(model: ObservedModel, fit: Fitted, function: Function, side: f
         after = problem.at(np.clip(here.values + step, *limits.T))
         if not np.isfinite(after.cost):
             break
+        try:
+            before, reached = reached, function(after.values)
+        except NoAnswerError:
+            break
         here = after
-        before, reached = reached, function(here.values)
         if abs(reached - before) <= NEGLIGIBLE_STEP_SHARE * abs(reached - best):
             break
     return reached, bool(np.any((here.values <= limits[:, 0]) | (here.values >= limits[:, 1])))
@@ -195,12 +220,14 @@ def _step_to_end(
 
 
 def _gradient(function: Function, values: Floats, limits: Floats) -> Floats:
-    """Gradient (q,) of a function, by differences towards the inside of its limits (q, 2)."""
+    """Gradient (q,) of a function, by differences towards the inside of its limits (q, 2), or where it has a value."""
     slope, here = np.zeros(len(values)), function(values)
-    for n in range(len(values)):
+    for n, row in enumerate(np.eye(len(values))):
         step = GRADIENT_STEP_SHARE * (limits[n, 1] - limits[n, 0])
         step = -step if values[n] + step > limits[n, 1] else step
-        moved = values.copy()
-        moved[n] += step
-        slope[n] = (function(moved) - here) / step
+
+        def change(by: float, along: Floats = row) -> Floats:
+            return np.array([function(values + by * along) - here])
+
+        slope[n] = slope_by_step(change, step, 1)[0]
     return slope

@@ -3,6 +3,7 @@ bounds, on whatever gives a cost and its quadratic model.
 """
 
 from collections.abc import Callable
+from contextlib import suppress
 from typing import NamedTuple, Protocol, TypeVar
 
 import numpy as np
@@ -76,12 +77,13 @@ def _improved(
 ) -> tuple[PointType | None, float]:
     """A better point and the next damping; none where only steps too small to matter are left."""
     while damping < TIGHTEST:
-        step = bounded_step(hessian, gradient, damping, here.values, limits)
-        after = at(here.values + step)
-        if after.cost < here.cost:
-            return after, damping / 10.0
-        if float(step @ hessian @ step) < still**2:
-            break
+        with suppress(ValueError):  # of a matrix that is not positive, or beyond all numbers
+            step = bounded_step(hessian, gradient, damping, here.values, limits)
+            after = at(here.values + step)
+            if after.cost < here.cost:
+                return after, damping / 10.0
+            if float(step @ hessian @ step) < still**2:
+                break
         damping = max(damping * 10.0, FIRST_DAMPING)
     return None, damping
 

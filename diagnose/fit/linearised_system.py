@@ -126,7 +126,7 @@ def linearise(
     nuisance_design, sigma = [tangents, numerical], [model.sigma, numerical_sigma]
     effect, unit_form_variance, laws = np.zeros(len(samples)), np.zeros(len(samples)), 0
     if settings:
-        without = model.signals(values)
+        without = model.signals(model.answerable_nuisances(np.zeros(len(values)), values, ()))
         effect = predicted - samples.coefficients(without)
         ones = [1.0] * len(samples.channels)
         change = [{name: a[name] - b[name] for name in a} for a, b in zip(shown, without, strict=True)]

@@ -1,6 +1,5 @@
 """An engine seen through the instruments: vectors of whitened coefficients for any mechanisms and nuisances."""
 
-from collections import OrderedDict
 from collections.abc import Sequence
 from copy import copy
 
@@ -15,10 +14,10 @@ from diagnose.fit.nuisances import (
     values_by_name,
 )
 from diagnose.fit.samples import Samples
+from diagnose.fit.trials import Trials
 from diagnose.forward import Candidate, Engine, Setting, Signals
 from foundation.arrays import Floats
 
-MOST_REMEMBERED = 400  # predictions of one run
 SLOPE_STEP_SHARE = 0.02  # of the first start of a coordinate, for slopes
 STEP_SHARES = (0.5, 0.25, 0.125)  # of a step of the nuisances
 
@@ -26,16 +25,16 @@ STEP_SHARES = (0.5, 0.25, 0.125)  # of a step of the nuisances
 class ObservedModel:
     """An engine with the instruments of a recording. nuisances : in order. sigma : (p,) deviations of their priors.
 
-    tolerance : (n,) variance of the discrepancy that it may leave, see signal_discrepancy.py.
+    engine : by which trials are evaluated; ValueError as the engine is NoAnswerError throughout. tolerance : (n,)
+    variance of the discrepancy that it may leave, see signal_discrepancy.py.
     """
 
     def __init__(self, samples: Samples, engine: Engine) -> None:
-        self.samples, self.engine = samples, engine
+        self.samples, self.runs = samples, samples.recording.runs
+        self.engine = Trials(engine, self.runs)
         self.tolerance = np.zeros(len(samples))
-        self.runs = samples.recording.runs
         self.nuisances: tuple[Nuisance, ...] = declared_nuisances(samples.recording, engine)
         self.sigma: Floats = np.array([nuisance.sigma for nuisance in self.nuisances])
-        self._known: OrderedDict[tuple[object, ...], Signals] = OrderedDict()
 
     def with_tolerance(self, variance: Floats) -> "ObservedModel":
         """This model where it may leave a discrepancy of variance (n,)."""
@@ -48,17 +47,6 @@ class ObservedModel:
         other = copy(self)
         other.samples, other.tolerance = samples, np.zeros(len(samples))
         return other
-
-    def engine_signals(self, run: int, settings: Sequence[Setting]) -> Signals:
-        """Signals of a run by the engine, remembered for the last settings. ValueError as the engine."""
-        on = [s for s in settings if any(s.values)]
-        key = (run, *((s.candidate.name, s.values) for s in on))
-        if key not in self._known:
-            self._known[key] = self.engine.predict(run, on)
-            if len(self._known) > MOST_REMEMBERED:
-                self._known.popitem(last=False)
-        self._known.move_to_end(key)
-        return self._known[key]
 
     def signals(self, values: Floats, settings: Sequence[Setting] = ()) -> list[dict[str, Floats]]:
         """Signals that the instruments of every run show, for nuisances (p,) and mechanisms.
@@ -115,7 +103,7 @@ class ObservedModel:
         return columns
 
     def _run_signals(self, run: int, values: Floats, settings: Sequence[Setting]) -> dict[str, Floats]:
-        raw = self.engine_signals(run, [*self._nuisance_settings(run, values), *settings])
+        raw = self.engine.predict(run, [*self._nuisance_settings(run, values), *settings])
         of, told = self.runs[run], (self.nuisances, values, run)
         return {name: instrument_signal(of, name, raw[name], values_by_name(*told, name)) for name in of.answers}
 

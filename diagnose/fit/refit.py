@@ -1,6 +1,7 @@
 """Mechanisms fitted to all samples, with nuisances and model-form error renewed until neither changes."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,12 +13,13 @@ from diagnose.fit.joint_descent import fitted_jointly
 from diagnose.fit.linearised_system import LinearisedSystem, linearise
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.samples import Samples
-from diagnose.forward import Candidate, Setting
+from diagnose.forward import Candidate, NoAnswerError, Setting
 from diagnose.statistics.error_rates import LARGEST_FORM_SHARE
 from foundation.arrays import Floats
 
 MAX_REFIT_ROUNDS = 2
 NEAR_CHANGE_SIGMAS = 1.0  # of the whitened prediction: for a smaller change variances need not be renewed
+START_SHARES = (1.0, 0.5, 0.25, 0.1, 0.01)  # of the values from which a fit is asked to start
 FORM_ERROR_SHARES = np.array([0.0, 0.125, 0.25, 0.5, 1.0])  # of the largest model-form error
 
 
@@ -57,13 +59,16 @@ def fit_mechanisms(
 ) -> Fitted:
     """Fit candidates from values `start` (q,), with the model-form error the likeliest up to the largest.
 
-    system : holds the nuisances to start from, and the rows that are looked at. excess : see largest_form_error.
+    system : holds the nuisances to start from, and the rows that are looked at. excess : see largest_form_error. Where
+    the model has no answer there the fit starts nearer to where they are off.
     """
-    values, nuisances = start, system.values
+    values, nuisances = _answerable_start(model, system.values, candidates, start)
     for _ in range(MAX_REFIT_ROUNDS):
         system = linearise(model, nuisances, settings(candidates, values), FORM_ERROR, system.informative)
         system = replace(system, form_error=largest_form_error(system, excess))
         found = fitted_jointly(model, system, candidates, values)
+        if not np.isfinite(found.cost):
+            break
         change = model.vector(found.nuisances, settings(candidates, found.values)) - model.vector(
             nuisances, settings(candidates, values)
         )
@@ -76,6 +81,17 @@ def fit_mechanisms(
     system = replace(system, form_error=likeliest)
     system, place, slopes = _descend_in_metric(model, system, candidates, values)
     return Fitted(tuple(candidates), place.values, system, slopes, largest, _log_evidence(system))
+
+
+def _answerable_start(
+    model: ObservedModel, nuisances: Floats, candidates: Sequence[Candidate], start: Floats
+) -> tuple[Floats, Floats]:
+    """Values (q,) and nuisances (p,) to which the model has an answer, on the way from a start to where all is off."""
+    for share in START_SHARES:
+        with suppress(NoAnswerError):
+            model.signals(nuisances, settings(candidates, share * start))
+            return share * start, nuisances
+    return 0.0 * start, model.answerable_nuisances(0.0 * nuisances, nuisances, ())
 
 
 def largest_form_error(system: LinearisedSystem, excess: float) -> float:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from diagnose.findings import Findings, FittedModel
-from diagnose.forward import Engine
+from diagnose.forward import Engine, NoAnswerError
 from diagnose.next_press.parting import PressJudge
 from diagnose.next_press.proposals import PressSetup, Proposal, base_setup, repeat_proposals
 from diagnose.next_press.variations import variations
@@ -45,12 +45,12 @@ def next_presses(recording: Recording, engine: Engine, findings: Findings) -> tu
     """Best press to make next, and presses to make after it; none where fewer than two models are left.
 
     Each tells apart what those before it are not expected to: separations of presses add as squares. None is proposed
-    that separates no two of these by LEAST_SEPARATION_SIGMAS. ValueError where the engine cannot tell.
+    that separates no two of these by LEAST_SEPARATION_SIGMAS.
     """
-    rivals = surviving_models(findings)
+    judge = PressJudge(recording, engine, surviving_models(findings))
+    rivals = tuple(judge.known)
     if len(rivals) < 2:
         return ()
-    judge = PressJudge(recording, engine, rivals)
     search, known = PressSearch(judge, recording), np.zeros(len(rivals) * (len(rivals) - 1) // 2)
     found: list[NextPress] = []
     while len(found) < MOST_PRESSES and known.min() < SETTLED_SEPARATION_SIGMAS:
@@ -107,7 +107,7 @@ class PressSearch:
             proposal = replace(proposal, run=self.recording.as_next_run(proposal.run))
             try:
                 yield proposal, self.judge.separations(proposal)
-            except ValueError:  # beyond what the model was prepared for
+            except NoAnswerError:  # beyond what the model was prepared for
                 continue
 
 

@@ -4,8 +4,10 @@ What may float is what an inference excuses too: nuisances, errors of the model,
 is a recording of one run that nobody has made yet.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import combinations
 from typing import cast
 
@@ -15,9 +17,11 @@ from diagnose.findings import FittedModel
 from diagnose.fit.discrepancy import FORM_ERROR
 from diagnose.fit.linearised_system import LinearisedSystem, linearise
 from diagnose.fit.marginal_likelihood import Quadratic
+from diagnose.fit.nuisances import slope_by_step
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.samples import Samples
-from diagnose.forward import Candidate, Engine, Setting, Signals
+from diagnose.fit.trials import rejected
+from diagnose.forward import Candidate, Engine, NoAnswerError, Setting, Signals
 from diagnose.next_press.proposals import Proposal
 from diagnose.noise.estimate import noise_models
 from diagnose.noise.model import NoiseModel, white_noise
@@ -69,29 +73,33 @@ class ImaginedAnswer:
 class PressJudge:
     """Rivals, and what the recording tells of their coordinates.
 
-    spreads : (q, q) for each rival, a root of the covariance that the recording leaves to its coordinates.
+    known : the rivals as they were found. spreads : (q, q) for each, a root of the covariance that the recording leaves
+    to its coordinates.
     """
 
     def __init__(self, recording: Recording, engine: Engine, rivals: Sequence[FittedModel]) -> None:
-        """Learn from the recording what it leaves open. ValueError where the engine cannot tell."""
-        self.engine = engine
-        self.rivals = [replace(rival, settings=without_phase(rival.settings)) for rival in rivals]
-        self.specimen, self.noise = recording.specimen, noise_models(recording)
+        """Learn from the recording what it leaves open. A rival to which the engine has no answer is none."""
+        self.engine, self.specimen, self.noise = engine, recording.specimen, noise_models(recording)
         model = ObservedModel(Samples(recording, self.noise), engine)
-        self.spreads = [
-            self._coordinate_root(self._rival_answer(model, rival), rival.settings) for rival in self.rivals
-        ]
+        self.known, self.rivals, self.spreads = [], [], []
+        for known in rivals:
+            rival = replace(known, settings=without_phase(known.settings))
+            with suppress(NoAnswerError):
+                self.spreads.append(self._coordinate_root(self._rival_answer(model, rival), rival.settings))
+                self.known.append(known)
+                self.rivals.append(rival)
 
     def separations(self, proposal: Proposal) -> Floats:
-        """Separations (pairs,) in sigma between each two rivals. ValueError where the engine cannot tell."""
+        """Separations (pairs,) in sigma between each two rivals. NoAnswerError."""
         answers = self.rival_answers(proposal)
         pairs = combinations(range(len(answers)), 2)
         return np.array([self._separation(answers[i], answers[j], self.spreads[i], self.spreads[j]) for i, j in pairs])
 
     def rival_answers(self, proposal: Proposal) -> list[ImaginedAnswer]:
-        """Predictions of a press by each rival. ValueError where the engine cannot tell."""
+        """Predictions of a press by each rival. NoAnswerError."""
         run, engine = proposal.run, cast(Engine, ImaginedEngine(self.engine, proposal))
-        noise = {(run.label, name): self._channel_noise(proposal, engine, name) for name in run.answers}
+        with rejected():
+            noise = {(run.label, name): self._channel_noise(proposal, engine, name) for name in run.answers}
         model = ObservedModel(Samples(Recording((run,), self.specimen), noise), engine)
         return [self._rival_answer(model, rival) for rival in self.rivals]
 
@@ -110,7 +118,10 @@ class PressJudge:
         settings = rival.settings
         values = np.array([0.0 if n.run is not None else rival.shared.get(n.name, 0.0) for n in model.nuisances])
         prediction = model.vector(values, settings)
-        slopes = [(model.vector(values, moved) - prediction) / step for moved, step in _shifted_settings(settings)]
+        slopes = [
+            slope_by_step(partial(_change, model, values, prediction, moved), step, len(prediction))
+            for moved, step in _coordinate_steps(settings)
+        ]
         return ImaginedAnswer(
             linearise(model, values, settings, FORM_ERROR),
             prediction,
@@ -134,12 +145,25 @@ class PressJudge:
         return float(np.sqrt(max(Quadratic(weight * columns, sigma).square(difference), 0.0)))
 
 
-def _shifted_settings(settings: Sequence[Setting]) -> Iterator[tuple[list[Setting], float]]:
-    """Settings with one coordinate after the other moved a little towards the middle of its range, and by how much."""
+Moved = Callable[[float], list[Setting]]
+"""Settings of which one coordinate is moved by so much."""
+
+
+def _coordinate_steps(settings: Sequence[Setting]) -> Iterator[tuple[Moved, float]]:
+    """One coordinate after the other, with a small step towards the middle of its range."""
     for number, setting in enumerate(settings):
         for which, coordinate in enumerate(setting.candidate.coordinates):
             value = setting.values[which]
             towards = 1.0 if value < 0.5 * (coordinate.low + coordinate.high) else -1.0
             step = towards * SLOPE_STEP_SHARE * (abs(value) + SLOPE_STEP_SHARE * (coordinate.high - coordinate.low))
-            values = tuple(v + step if n == which else v for n, v in enumerate(setting.values))
-            yield [replace(s, values=values) if n == number else s for n, s in enumerate(settings)], step
+            yield partial(_moved, settings, number, which), step
+
+
+def _moved(settings: Sequence[Setting], number: int, which: int, by: float) -> list[Setting]:
+    values = tuple(v + by if n == which else v for n, v in enumerate(settings[number].values))
+    return [replace(s, values=values) if n == number else s for n, s in enumerate(settings)]
+
+
+def _change(model: ObservedModel, values: Floats, prediction: Floats, moved: Moved, by: float) -> Floats:
+    """Change (n,) of a prediction by a step of one coordinate. NoAnswerError."""
+    return np.asarray(model.vector(values, moved(by)) - prediction)
