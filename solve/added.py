@@ -26,13 +26,15 @@ class Motion:
 class TouchedFilm:
     """The film under a dot over time. time_s : (t,) since the first touch, negative before it.
 
-    touched : (t,) contact area over the largest one; area_m2 : (e,) of the electrodes.
+    touched : (t,) contact area over the largest one; area_m2 : (e,) of the electrodes. strain_charge_C : (t, e) that
+    the strain alone makes.
     """
 
     time_s: Floats
     touched: Floats
     area_m2: Floats
     pyroelectric_uC_per_m2_K: float
+    strain_charge_C: Floats
 
 
 class Added:
@@ -58,9 +60,13 @@ class Added:
 
 
 def added_charge_C(
-    added: Iterable[Added], time_s: Floats, contact_area: Floats, area_m2: Floats, pyroelectric_uC_per_m2_K: float
-) -> Floats:
-    """Sum (t, e) of their charges in C. contact_area : (t,) in any unit; area_m2 : (e,) of the electrodes."""
+    added: Iterable[Added], time_s: Floats, contact_area: Floats, area_m2: Floats, pyroelectric_uC_per_m2_K: float,
+    strain_charge_C: Floats,
+) -> Floats:  # fmt: skip
+    """Sum (t, e) of their charges in C. contact_area : (t,) in any unit; area_m2 : (e,) of the electrodes.
+
+    strain_charge_C : (t, e) that the strain makes.
+    """
     touched = contact_area / max(float(contact_area.max()), 1e-300)
-    film = TouchedFilm(time_s, touched, area_m2, pyroelectric_uC_per_m2_K)
+    film = TouchedFilm(time_s, touched, area_m2, pyroelectric_uC_per_m2_K, strain_charge_C)
     return np.asarray(sum((one.charge_C(film) for one in added), np.zeros((len(time_s), len(area_m2)))))

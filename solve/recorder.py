@@ -224,4 +224,5 @@ class Recorder:
         """Charge (t, e) in C that is not of the strain."""
         assert isinstance(self.film, PiezoelectricFilm)
         constant = self.film.pyroelectric_uC_per_m2_K
-        return added_charge_C(self.physics.added, trace.time_s, trace.contact_area_m2, self.electrode_area_m2, constant)
+        film = trace.time_s, trace.contact_area_m2, self.electrode_area_m2, constant, trace.film_charge_C
+        return added_charge_C(self.physics.added, *film)

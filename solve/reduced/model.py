@@ -61,7 +61,7 @@ class ReducedModel:
         motion = Motion(drive, partial(np.gradient, drive, time), partial(second_differences, time, drive))
         force = sensor_force_N(drive, kind, path, outputs[:, 0], physics, motion)
         area, constant = self.film[:, 1], self.pyroelectric_uC_per_m2_K
-        each = outputs[:, 2:] + added_charge_C(physics.added, time, outputs[:, 1], area, constant)
+        each = outputs[:, 2:] + added_charge_C(physics.added, time, outputs[:, 1], area, constant, outputs[:, 2:])
         wired = np.ones(len(self.film)) if wired is None else np.asarray(wired, dtype=np.float64)
         charge, capacitance = each @ wired, float(self.film[:, 0] @ wired)
         voltage = amplify(time, charge, capacitance, readout, physics)

@@ -47,6 +47,15 @@ def mechanism(draw, name, segment, dot) -> dict | None:
             "rig",
             {"friction_force_N": [draw.log(1e-3, 10.0)], "presliding_mm": [draw.log(1e-4, 0.1)]},
         ),
+        "viscous-guide": lambda: (
+            "rig",
+            {
+                "viscous_N_s_per_mm": draw.log(1e-3, 1.0),
+                "stribeck_N": draw.log(1e-3, 1.0),
+                "stribeck_mm_per_s": draw.log(0.1, 10.0),
+            },
+        ),
+        "hysteresis": lambda: ("film", {"play_shares": [draw.between(0.01, 0.5)], "play_pC": [draw.log(0.1, 100.0)]}),
         "crosstalk": lambda: _crosstalk(draw),
         "property-error": lambda: _property(draw, media, dot),
         "dimension-reduction": lambda: ("dot", {}),

@@ -33,6 +33,15 @@ ANYWHERE = {
         "friction_force_N": st.lists(between(0.0, 1.0), min_size=2, max_size=2),
         "presliding_mm": st.lists(log_between(1e-3, 0.1), min_size=2, max_size=2),
     },
+    ("viscous-guide", "rig"): {
+        "viscous_N_s_per_mm": between(0.0, 1.0),
+        "stribeck_N": between(0.0, 1.0),
+        "stribeck_mm_per_s": log_between(0.1, 10.0),
+    },
+    ("hysteresis", "film"): {
+        "play_shares": st.lists(between(0.0, 0.4), min_size=2, max_size=2),
+        "play_pC": st.lists(log_between(0.1, 100.0), min_size=2, max_size=2),
+    },
     ("elastic-sides", "sides"): {"stiffness_N_per_mm3": log_between(0.01, 100.0)},
 }
 OF_A_MEDIUM = {

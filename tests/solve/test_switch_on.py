@@ -37,6 +37,8 @@ def switched(model, name, component, **parameters):
         ("film-prestretch", "film", {}),
         ("inertia", "rig", {"moving_mass_g": 0.0}),
         ("guide-friction", "rig", {"friction_force_N": [0.0], "presliding_mm": [0.01]}),
+        ("viscous-guide", "rig", {"viscous_N_s_per_mm": 0.0}),
+        ("hysteresis", "film", {"play_shares": [0.0], "play_pC": [1.0]}),
         ("pyroelectric-drift", "film", {"temperature_step_K": 0.0}),
         ("contact-electrification", "film", {"charge_pC": 0.0}),
         ("property-error", "medium2", {}),

@@ -66,6 +66,8 @@ OFF = [
     ("film-prestretch", "film", {}),
     ("inertia", "rig", {"moving_mass_g": 0.0}),
     ("guide-friction", "rig", {"friction_force_N": [0.0], "presliding_mm": [0.01]}),
+    ("viscous-guide", "rig", {"viscous_N_s_per_mm": 0.0}),
+    ("hysteresis", "film", {"play_shares": [0.0], "play_pC": [1.0]}),
     ("property-error", "medium2", {}),
 ]
 

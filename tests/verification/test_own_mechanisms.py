@@ -1,9 +1,6 @@
-"""Two mechanisms that stand in this file alone: each with its term, derivative, off value, switch and candidates.
+"""A viscous guide, and a mechanism that stands in this file alone: term, derivative, off value, switch, candidates.
 
-A viscous guide with a Stribeck part rubs on what moves with the dot,
-    F(v) = c v + F_s exp(-(v / v_s)^2) tanh(v / v_r)
-(Armstrong-Helouvry, Dupont and Canudas de Wit, Automatica 30, 1994, with tanh in place of the sign of v), and a
-foundation of Winkler's kind, whose springs stiffen, carries the base in place of the clamp,
+The latter is a foundation of Winkler's kind, whose springs stiffen and carry the base in place of the clamp,
     t = -(k + k_3 |u|^2) u.
 """
 
@@ -16,19 +13,21 @@ from pydantic import Field
 
 from diagnose.engines.segment.presses import Presses
 from diagnose.forward import Candidate, Coordinate
+from diagnose.signals.time_scales import TimeScales
 from diagnose.vocabulary import base as vocabulary
 from diagnose.vocabulary.scene import Scene
 from geometry.parameters import NonNegative, Positive
 from mesh.options import MeshOptions
 from softdot.config.loading import config_from
 from softdot.config.model import model_of
-from solve.mechanisms import MECHANISMS, register
-from solve.mechanisms.base import MechanismType, Parameters, Traits, in_place, with_physics
+from solve.mechanisms import MECHANISMS, register, with_mechanisms
+from solve.mechanisms.base import MechanismType, Parameters, in_place, with_physics
 from solve.model import Press, Readout
 from solve.physics import Physics
 from solve.terms.base import Block, Term
 from solve.terms.contact import SHAPES, facet_area
 from solve.terms.definition import TermDefinition
+from solve.terms.guide_viscosity import GuideTerm, ViscousGuide
 from solve.terms.inertia import MassTerm
 from solve.terms.rig import RigSpring, RigTerm
 from tests.solve.test_reduced import solid
@@ -36,82 +35,7 @@ from tests.solve.test_rig import drive
 from tests.solve.trial import trial
 from tests.verification.slices import BLOCK, DEPTH_MM, force, mesh_of, pressed, waved
 
-VISCOUS_N_s_per_mm, STRIBECK_N, STRIBECK_mm_per_s, SHARP_mm_per_s = 0.02, 0.1, 1.5, 0.05
-
-
-# the guide
-
-
-@dataclass(frozen=True)
-class GuideTerm(Term):
-    """F(v) on the approach, whose velocity is that over the step; all in solver units but the constants."""
-
-    dof: int
-    guide: "StribeckGuide"
-    mm: float
-    newton: float
-
-    @property
-    def groups(self):
-        return (np.array([[self.dof]]),)
-
-    def elements(self, state, history):
-        speed = float(state.x[self.dof] + state.previous_move[2]) / state.time_step
-        rubs, slope = self.guide.rubs(speed / self.mm)
-        tangent = slope / (self.mm * state.time_step)
-        yield Block(0, slice(0, 1), np.array([[[tangent * self.newton]]]), np.array([[rubs * self.newton]]))
-
-
-@dataclass(frozen=True)
-class StribeckGuide(TermDefinition):
-    viscous_N_s_per_mm: float = 0.0
-    stribeck_N: float = 0.0
-    words = "a viscous guide"
-    follows_time = True
-    of_rig = True
-    resists = True
-
-    @property
-    def is_off(self):
-        return self.viscous_N_s_per_mm == self.stribeck_N == 0.0
-
-    def rubs(self, v):
-        """Force in N and its derivative, at a velocity in mm/s."""
-        fades, turns = np.exp(-((v / STRIBECK_mm_per_s) ** 2)), np.tanh(v / SHARP_mm_per_s)
-        slope = fades * ((1.0 - turns**2) / SHARP_mm_per_s - 2.0 * v / STRIBECK_mm_per_s**2 * turns)
-        return self.viscous_N_s_per_mm * v + self.stribeck_N * fades * turns, (
-            self.viscous_N_s_per_mm + self.stribeck_N * slope
-        )
-
-    def build(self, make):
-        if make.unknowns.approach >= 0:
-            newton = make.share / make.units.force
-            yield GuideTerm(make.unknowns.approach, self, 1e-3 / make.units.length, newton)
-
-    def force_N(self, motion):
-        return self.rubs(motion.velocity())[0]
-
-
-class StribeckParameters(Parameters):
-    """A viscous guide."""
-
-    viscous_N_s_per_mm: NonNegative = Field(description="force per velocity")
-    stribeck_N: NonNegative = Field(0.0, description="force of boundary lubrication")
-
-
-def guided(model, component, values):  # noqa: ARG001 - as all are called
-    guide = StribeckGuide(values.viscous_N_s_per_mm, values.stribeck_N)
-    return with_physics(model, terms=in_place(model.physics.terms, guide))
-
-
-def guide_candidates(scene):
-    slowest = scene.force_N * scene.step_s / scene.depth_mm
-    parts = tuple(Coordinate(name, 0.0, 100.0, (0.1, 1.0)) for name in ("viscous", "stribeck"))
-    yield Candidate(
-        "stribeck-guide", "rig", parts,
-        lambda values: {"viscous_N_s_per_mm": slowest * values[0], "stribeck_N": 0.1 * scene.force_N * values[1]},
-        units={"viscous_N_s_per_mm": "N s/mm", "stribeck_N": "N"},
-    )  # fmt: skip
+VISCOUS_N_s_per_mm, STRIBECK_N, STRIBECK_mm_per_s = 0.02, 0.1, 1.5
 
 
 # the foundation
@@ -184,36 +108,22 @@ def foundation_candidates(scene):  # noqa: ARG001 - as all are called
     )  # fmt: skip
 
 
-KINDS = {
-    "stribeck-guide": (
-        MechanismType(
-            "stribeck-guide", ("rig",), StribeckParameters, guided, {"viscous_N_s_per_mm": 0.0, "stribeck_N": 0.0},
-            traits=Traits(memory=True, acts_on_tables=True),
-        ),
-        "a guide of {} is viscous", guide_candidates,
-    ),
-    "elastic-foundation": (
-        MechanismType(
-            "elastic-foundation", ("bond-base",), FoundationParameters, founded, {"stiffness_N_per_mm3": inf}
-        ),
-        "{} gives way", foundation_candidates,
-    ),
-}  # fmt: skip
+FOUNDATION = MechanismType(
+    "elastic-foundation", ("bond-base",), FoundationParameters, founded, {"stiffness_N_per_mm3": inf}
+)
 
 
 @pytest.fixture
 def registered():
-    """Both, known as long as a test lasts."""
+    """The foundation, known as long as a test lasts."""
     vocabulary.vocabulary()
-    for kind, words, candidates in KINDS.values():
-        register(kind)
-        vocabulary.register(vocabulary.Vocabulary(kind, words, candidates))
+    register(FOUNDATION)
+    vocabulary.register(vocabulary.Vocabulary(FOUNDATION, "{} gives way", foundation_candidates))
     yield
-    for name in KINDS:
-        del MECHANISMS[name], vocabulary.VOCABULARY[name]
+    del MECHANISMS[FOUNDATION.name], vocabulary.VOCABULARY[FOUNDATION.name]
 
 
-GUIDE = StribeckGuide(VISCOUS_N_s_per_mm, STRIBECK_N)
+GUIDE = ViscousGuide(VISCOUS_N_s_per_mm, STRIBECK_N, STRIBECK_mm_per_s)
 RAMP = waved("ramp", 4, rise_s=0.1)
 SPEED_mm_per_s = DEPTH_MM / 0.1
 
@@ -267,12 +177,12 @@ def test_behind_a_spring_the_dot_drags_the_guide_along():
     trace = pressed(RAMP, Physics(terms=(RigSpring(0.05), GUIDE))).trace
     speed = np.diff(1e3 * trace.dot_path_m) / np.diff(trace.time_s)
     balance = trace.reaction_force_N - np.abs(trace.contact_force_N[:, 2])
-    np.testing.assert_allclose(balance[1:], GUIDE.rubs(speed)[0], atol=1e-6 * force_scale(trace))
+    np.testing.assert_allclose(balance[1:], GUIDE.friction(speed)[0], atol=1e-6 * force_scale(trace))
 
 
 def test_a_mass_that_a_force_drives_ends_at_the_speed_that_the_guide_allows():
     """v = F / c once m / c has passed: a hundred times that here."""
-    guide, push, mass = StribeckGuide(VISCOUS_N_s_per_mm), 0.02, 1e-4
+    guide, push, mass = ViscousGuide(VISCOUS_N_s_per_mm), 0.02, 1e-4
     rig = RigTerm(0, None, alone=False), GuideTerm(0, guide, 1.0, 1.0), MassTerm(0, mass)
     time = np.linspace(0.0, 100.0 * mass / VISCOUS_N_s_per_mm, 401)
     speed = np.gradient(drive(rig, np.full(401, push), time, stiffness=0.0)[:, 0], time)
@@ -323,18 +233,21 @@ def configured(*mechanisms):
 @pytest.mark.usefixtures("registered")
 def test_a_configuration_switches_both_on_and_their_off_values_leave_the_model_as_it_is():
     on = configured(
-        ("stribeck-guide", "rig", {"viscous_N_s_per_mm": 0.02}),
+        ("viscous-guide", "rig", {"viscous_N_s_per_mm": 0.02}),
         ("elastic-foundation", "bond-base", {"stiffness_N_per_mm3": 3.0, "cubic_N_per_mm5": 1.0}),
     )
-    assert on.physics.terms == (StribeckGuide(0.02), Foundation(3.0, 1.0))
+    assert on.physics.terms == (ViscousGuide(0.02), Foundation(3.0, 1.0))
     assert on.follows_time
-    off = configured(("stribeck-guide", "rig", {"viscous_N_s_per_mm": 0.0}))
+    off = configured(("viscous-guide", "rig", {"viscous_N_s_per_mm": 0.0}))
     assert replace(off, mechanisms=()) == configured()
     assert founded(off, "bond-base", FoundationParameters.model_construct(stiffness_N_per_mm3=inf)).physics == Physics()
 
 
+SCALES = TimeScales(loading_s=0.1, step_s=0.002, lasting_s=1.0)
+
+
 def scene_of(model):
-    return Scene(model, (Readout(),), depth_mm=0.2, force_N=2.0, voltage_V=1.0, step_s=0.002, duration_s=1.0)
+    return Scene(model, (Readout(),), depth_mm=0.2, force_N=2.0, voltage_V=1.0, scales=SCALES)
 
 
 @pytest.mark.usefixtures("registered")
@@ -342,15 +255,14 @@ def test_a_diagnosis_looks_for_both():
     """The guide in what the sensor reads of a table, the foundation in a press of its own."""
     model = configured()
     found = {one.name: one for one in vocabulary.candidates_of_segment(scene_of(model))}
-    guide, foundation = found["stribeck-guide", "rig"], found["elastic-foundation", "bond-base"]
-    rubs = guide.as_mechanism((1.0, 2.0)).values()
-    on = guided(model, "rig", rubs).physics
+    guide, foundation = found["viscous-guide", "rig"], found["elastic-foundation", "bond-base"]
+    on = with_mechanisms(model, [guide.as_mechanism((0.5, 0.2, 0.3))]).physics
     time = np.linspace(0.0, 1.0, 201)
     more = solid().respond(time, 0.4 * time, on).force_N - solid().respond(time, 0.4 * time).force_N
-    np.testing.assert_allclose(more, on.terms[0].rubs(0.4)[0], rtol=1e-9)
+    np.testing.assert_allclose(more, on.terms[0].friction(0.4)[0], rtol=1e-9)
     with pytest.raises(ValueError, match="a viscous guide"):
         solid().respond(time, None, on, force_N=0.1 * time)
     presses = Presses(model, mesh_of(False), MeshOptions(element_size_mm=0.9, mesher="layered"), 0.1)
     job, _ = presses.candidate_job(foundation, (5.0,))
     assert job.model.physics.terms == (Foundation(0.2),)
-    assert guided(model, "rig", rubs).physics.structure == Physics()
+    assert on.structure == Physics()

@@ -28,6 +28,7 @@ from solve.materials.prony import Prony
 from solve.model import Model, Readout
 from solve.physics import laws_of
 from solve.readout.amplifier import amplify
+from solve.readout.hysteresis import FilmHysteresis
 
 HERTZ_AREA_EXPONENT = 2.0 / 3.0
 
@@ -73,13 +74,20 @@ def film_charge(model: Model, loading: Loading) -> Floats:
     return Relaxation.from_series(series, loading.time_s).relaxed_stress(charge[:, None])[:, 0]
 
 
+def held_back(model: Model, shape: Floats, largest_C: float) -> Floats:
+    """What hysteresis holds back (t,) of a charge of this shape (t,), whose largest is that in C."""
+    plays = [one for one in model.physics.added if isinstance(one, FilmHysteresis)]
+    return np.asarray(sum((one.held_back(shape, 1e-12 / largest_C) for one in plays), np.zeros(len(shape))))
+
+
 def other_charge(model: Model, loading: Loading) -> Floats:
     """Charge (t,) in C of the touch and of heat."""
     film = model.materials["film"]
     assert isinstance(film, PiezoelectricFilm)
     area = np.maximum(loading.force, 0.0) ** HERTZ_AREA_EXPONENT
     area_m2 = np.array([1e-6 * model.segment.length_mm * model.segment.width_mm])
-    under = TouchedFilm(loading.time_s - loading.touch_s, area, area_m2, film.pyroelectric_uC_per_m2_K)
+    none = np.zeros((len(area), 1))
+    under = TouchedFilm(loading.time_s - loading.touch_s, area, area_m2, film.pyroelectric_uC_per_m2_K, none)
     return np.asarray(sum((one.charge_C(under)[:, 0] for one in model.physics.added), np.zeros(len(area))))
 
 

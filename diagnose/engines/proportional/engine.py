@@ -13,14 +13,15 @@ from typing import Self
 import numpy as np
 
 from diagnose.engines.coupon.tested_layer import active_mechanisms, layer_model, with_factors_last
-from diagnose.engines.proportional.charge import Loading, amplifier_voltage, film_charge, other_charge
+from diagnose.engines.proportional.charge import Loading, amplifier_voltage, film_charge, held_back, other_charge
 from diagnose.engines.proportional.medium import MEDIUM
 from diagnose.forward import Candidate, Coordinate, Setting, Signals, SolvedOutright
 from diagnose.signals.phases import Segmentation, find_phases, rest_level
 from diagnose.signals.recording import Recording, Run
+from diagnose.signals.time_scales import time_scales
 from diagnose.vocabulary.base import candidates_of_unknown_geometry
 from diagnose.vocabulary.scales import growing
-from diagnose.vocabulary.scene import Scene, film_capacitance_pF
+from diagnose.vocabulary.scene import Scene, film_capacitance_pF, shown_answers
 from foundation.arrays import Floats
 from foundation.errors import InputError
 from foundation.progress import Report
@@ -114,8 +115,9 @@ class ProportionalEngine(SolvedOutright):
     ) -> Signals:
         model = with_factors_last(idle_model(run, more_capacitance), mechanisms)
         shape, other = film_charge(model, loading), other_charge(model, loading)
+        shown = shape - held_back(model, shape, 1e-12 * self.scene.charge_pC)  # whatever the free sensitivity
         return {
-            name: amplifier_voltage(model, loading, charge * shape + other)
+            name: amplifier_voltage(model, loading, charge * shown + other)
             for name, charge in zip(self.recording.runs[0].voltages, sensitivity_C, strict=True)
         }
 
@@ -192,9 +194,9 @@ def _scene(recording: Recording) -> Scene:
         depth_mm=1.0,
         force_N=1.0,
         voltage_V=max(float(np.nanmax(np.abs(run.channels[name]))) for run in runs for name in run.voltages),
-        step_s=min(run.step_s for run in runs),
-        duration_s=max(float(run.time_s[-1] - run.time_s[0]) for run in runs),
+        scales=time_scales(recording),
         channels=len(runs[0].voltages),
+        shown=shown_answers(recording),
     )
 
 

@@ -57,8 +57,9 @@ class Task:
 
 def solve(task: Task, report: Report) -> Signals:
     """Every answer of the task's run by the 3D model. NoEquilibriumError."""
-    found = _solve_through_time(task, report) if task.model.follows_time else _solve_by_depth(task, report)
-    # path, force and charge are those of the press itself: only the amplifier is still to come
+    pressed = replace(task, model=replace(task.model, physics=replace(task.model.physics, added=())))
+    found = _solve_through_time(pressed, report) if pressed.model.follows_time else _solve_by_depth(pressed, report)
+    # path, force and charge are those of the press itself: what is added and the amplifier are still to come
     return channel_signals(task.run, task.run.answers, task.drive, task.values, found, task.film, task.model)
 
 
@@ -86,7 +87,7 @@ def _solve_by_depth(task: Task, report: Report) -> Mechanics:
     at, first = np.unique(at, return_index=True)
     alike = Drive(np.arange(float(len(at))), at, task.drive.kind, np.ones(len(at), dtype=np.bool_))
     return _interpolate_mechanics(
-        _trace_columns(trace, task)[first],
+        _trace_columns(trace)[first],
         at,
         _mechanics_columns(task.shape(alike, at)),
         np.maximum(task.values, 0.0),
@@ -104,7 +105,7 @@ def _solve_through_time(task: Task, report: Report) -> Mechanics:
     waveform = Waveform.through(times_s, shares, each_solved=True)
     trace = _press_run(task, Press(**_press_target(task), waveform=waveform, load_steps=1), report).trace
     first = int(np.searchsorted(trace.time_s, lead_s[-1]))
-    at, found = trace.time_s[first:] - lead_s[-1], _trace_columns(trace, task)[first:]
+    at, found = trace.time_s[first:] - lead_s[-1], _trace_columns(trace)[first:]
     found[:, 3:] -= found[0, 3:]  # what yield left before has leaked away
     alike = _mechanics_columns(task.shape(task.drive, task.values))
     known = np.column_stack([np.interp(at, time, column) for column in alike.T])
@@ -138,10 +139,7 @@ def _mechanics_columns(found: Mechanics) -> Floats:
     return np.column_stack([found.path_mm, found.force_N, found.area_m2, found.charge_C])
 
 
-def _trace_columns(trace: Trace, task: Task) -> Floats:
-    """Columns (s, 3 + e) of a press: path in mm, force, area and charges.
-
-    The recorder's charge of heat and touch is taken off.
-    """
-    charge = trace.film_charge_C - task.film.added_charge_C(trace.time_s, trace.contact_area_m2, task.model.physics)
-    return np.column_stack([1e3 * trace.dot_path_m, trace.contact_force_N[:, 2], trace.contact_area_m2, charge])
+def _trace_columns(trace: Trace) -> Floats:
+    """Columns (s, 3 + e) of a press: path in mm, force, area and charges."""
+    force, area = trace.contact_force_N[:, 2], trace.contact_area_m2
+    return np.column_stack([1e3 * trace.dot_path_m, force, area, trace.film_charge_C])

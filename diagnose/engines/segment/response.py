@@ -34,9 +34,10 @@ class FilmPlate:
         """Film whose capacitance is larger by a factor, as that of a thinner one."""
         return replace(self, electrodes=self.electrodes * [factor, 1.0])
 
-    def added_charge_C(self, time_s: Floats, area_m2: Floats, physics: Physics) -> Floats:
-        """Charge (t, e) that is not of the strain; time (t,) from the first touch, contact area (t,)."""
-        return added_charge_C(physics.added, time_s, area_m2, self.electrodes[:, 1], self.pyroelectric_uC_per_m2_K)
+    def whole_charge_C(self, time_s: Floats, found: "Mechanics", physics: Physics) -> Floats:
+        """Charge (t, e) of the strain and of all that is added to it; time (t,) from the first touch."""
+        told = found.area_m2, self.electrodes[:, 1], self.pyroelectric_uC_per_m2_K, found.charge_C
+        return np.asarray(found.charge_C + added_charge_C(physics.added, time_s, *told))
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,7 @@ def channel_signals(
         motion = Motion(values, lambda: run.velocity_mm_per_s, lambda: run.acceleration_mm_per_s2)
         signals["force_N"] = sensor_force_N(*told, motion)
     if "displacement_mm" in names:
-        path = found.path_mm + on.dot.gap_mm
+        path = found.path_mm + on.dot.gap_mm + compliance_mm_per_N(on.physics) * values  # the rig's sensor, not the dot
         signals["displacement_mm"] = np.where(drive.touching, path, run.channels.get("displacement_mm", path))
     return {name: signals[name] for name in names}
 
@@ -106,7 +107,7 @@ def amplifier_voltages(
 
     names : in the order of the electrodes.
     """
-    charge = found.charge_C + film.added_charge_C(time_s, found.area_m2, on.physics)
+    charge = film.whole_charge_C(time_s, found, on.physics)
     time_s = time_s + ahead_s  # the amplifier itself knows differences of time only
     readout = on.readout or Readout()
     if len(names) == 1:
