@@ -72,4 +72,4 @@ def fill_box(given: dict[str, Any]) -> tuple[Floats, Ints]:
         bg_tets=given["bg_tets"].astype(np.int32),
         bg_values=given["bg_values"],
     )
-    return points, tets
+    return np.asarray(points, dtype=np.float64), np.asarray(tets, dtype=np.int64)
