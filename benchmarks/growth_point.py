@@ -20,7 +20,7 @@ from benchmarks.timing import REPEATS, Phases
 from solve.fem.tangent import Tangent
 from solve.solution.factorisation import Pardiso, SinglePardiso
 from solve.solution.linear import LinearSolver
-from solve.solution.newton import TOLERANCE
+from solve.solution.newton import RESIDUAL_TOLERANCE
 
 FACTOR_ENTRIES, FACTOR_MFLOP, TWO_LEVEL, SINGLE = 17, 18, 23, 27  # iparm, counted from 0
 SIMILAR = 1e-3  # a tolerance of the inexact Newton method
@@ -105,7 +105,7 @@ def refined(tangent: Tangent, residual: np.ndarray, count: int, repeats: int) ->
     linear.solve(tangent, -residual, SIMILAR)
     for _ in range(repeats):
         again("gmres", linear.solve, tangent, -residual, SIMILAR, True)
-        again("to 1e-10", linear.solve, tangent, -residual, TOLERANCE, True)
+        again("to 1e-10", linear.solve, tangent, -residual, RESIDUAL_TOLERANCE, True)
     linear.close()
     medians = again.medians()
     return {name: medians[name] for name in ("gmres", "to 1e-10")}

@@ -55,11 +55,11 @@ def check(
 
 
 def measure_errors(
-    kernel: ArrayKernel, presses: Mapping[str, Config], told: Report, executor: Executor = HERE
+    kernel: ArrayKernel, presses: Mapping[str, Config], report: Report, executor: Executor = HERE
 ) -> list[KernelCheck]:
     """Solve presses and lay them beside the kernel; the errors of each. StoppedPressError."""
     tasks = {name: KernelTask(config, ((0.0,), (0.0,))) for name, config in presses.items()}
-    solved = solve_all(tasks, told, executor)
+    solved = solve_all(tasks, report, executor)
     return [
         check(kernel, name, dot_places_mm(task), solved[name].depth_mm, solved[name].charge_pC, solved[name].force_N)
         for name, task in tasks.items()
@@ -84,16 +84,16 @@ def beside_matrix(kernel: ArrayKernel, matrix: CrosstalkMatrix) -> list[KernelCh
 
 
 def kernel_of(
-    case: ArrayCase, matrix: CrosstalkMatrix, told: Report, executor: Executor = HERE
+    case: ArrayCase, matrix: CrosstalkMatrix, report: Report, executor: Executor = HERE
 ) -> tuple[ArrayKernel, list[KernelCheck]]:
     """The kernel of an array with its errors; about is left to be filled. StoppedPressError."""
     grid = grid_of(case)
     tasks = grid.tasks()
     x, y = grid.nodes_mm
     names = {f"a dot at {x[i]:.2f}, {y[j]:.2f} mm": (i, j) for i, j in tasks}
-    presses = solve_all({name: tasks[index] for name, index in names.items()}, told, executor)
+    presses = solve_all({name: tasks[index] for name, index in names.items()}, report, executor)
     kernel = fill_kernel(grid, {names[name]: press for name, press in presses.items()})
-    return kernel, [*measure_errors(kernel, check_presses(case), told, executor), *beside_matrix(kernel, matrix)]
+    return kernel, [*measure_errors(kernel, check_presses(case), report, executor), *beside_matrix(kernel, matrix)]
 
 
 UNITS = {

@@ -216,7 +216,7 @@ def grid_of(case: ArrayCase, detail: KernelDetail = USUAL_DETAIL) -> KernelGrid:
     return KernelGrid(case, (grid_mm(case, 0, detail.per_pitch), grid_mm(case, 1, detail.per_pitch)), detail)
 
 
-def solve_all(tasks: Mapping[str, KernelTask], told: Report, executor: Executor) -> dict[str, KernelPress]:
+def solve_all(tasks: Mapping[str, KernelTask], report: Report, executor: Executor) -> dict[str, KernelPress]:
     """Solve each task. StoppedPressError for one that does not converge; the others are kept."""
     found = {name: press for name, task in tasks.items() if (press := recall(task)) is not None}
     left = {name: (task,) for name, task in tasks.items() if name not in found}
@@ -226,7 +226,7 @@ def solve_all(tasks: Mapping[str, KernelTask], told: Report, executor: Executor)
             raise StoppedPressError(f"{tasks[name].where} did not converge: {press.failure}")
         _keep(tasks[name], press)
         found[name] = press
-        told(name, len(found), len(tasks))
+        report(name, len(found), len(tasks))
     return found
 
 

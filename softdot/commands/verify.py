@@ -43,13 +43,13 @@ def run_verification(problems: Sequence[Problem], out: Path, progress: Progress 
 
     InputError before any work when out cannot be written.
     """
-    told = progress or Logged()
+    shown = progress or Logged()
     with staged_folder(out, VERIFY) as folder:
-        told.stage("verify")
+        shown.stage("verify")
         outcomes = []
         for number, problem in enumerate(problems, start=1):
             outcomes.append(problem.outcome())
-            told.step(number, len(problems), f"{problem.name} {verdict_word(outcomes[-1])}")
+            shown.step(number, len(problems), f"{problem.name} {verdict_word(outcomes[-1])}")
         summary: dict[str, Any] = plain(
             {
                 "format": VERIFY.format,

@@ -58,13 +58,13 @@ class Budget:
 
 
 def tolerance_budget(
-    config: Config, told: Callable[[int, int, str], None] = lambda *_: None, executor: Executor = HERE
+    config: Config, report: Callable[[int, int, str], None] = lambda *_: None, executor: Executor = HERE
 ) -> Budget:
     """The tolerance budget of a configuration, largest effect on the voltage first. InputError, LinearSolveError,
     MeshingError, StoppedShortError.
 
     First-order effects are found by direct differentiation of the press; those that vanish by symmetry, by presses at
-    both ends. told : called with the number of finished presses, their total, and the name of the last one.
+    both ends. report : called with the number of finished presses, their total, and the name of the last one.
     """
     rows, moved = tolerances(config), shifts(config)
     keys = tuple(sorted({key for row in rows for key in row.slopes}))
@@ -75,7 +75,7 @@ def tolerance_budget(
         for way, end in zip(END_NAMES, both, strict=True)
     }
     found = answer_all(
-        {NOMINAL_QUESTION: Question(fine, keys), **ends, CHECK_QUESTION: Question(coarse, keys)}, executor, told
+        {NOMINAL_QUESTION: Question(fine, keys), **ends, CHECK_QUESTION: Question(coarse, keys)}, executor, report
     )
     (nominal, by_key), (check, check_by_key) = found[NOMINAL_QUESTION], found[CHECK_QUESTION]
     effects = [_effect_by_derivatives(row, by_key, check_by_key) for row in rows]

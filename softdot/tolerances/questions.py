@@ -54,18 +54,18 @@ def kept_press(config: Config) -> KitPress:
 
 
 def answer_all(
-    questions: Mapping[str, Question], executor: Executor, told: Callable[[int, int, str], None]
+    questions: Mapping[str, Question], executor: Executor, report: Callable[[int, int, str], None]
 ) -> dict[str, Any]:
     """The answer to each question by its name. InputError, MeshingError, LinearSolveError, StoppedShortError.
 
-    told : called with the number of answers so far, their total, and the name of the last one.
+    report : called with the number of answers so far, their total, and the name of the last one.
     """
     found = {name: known for name, one in questions.items() if (known := one.stored_answer()) is not None}
     missing = {name: (one,) for name, one in questions.items() if name not in found}
-    told(len(found), len(questions), "")
+    report(len(found), len(questions), "")
     for name, future in completed_calls(executor, Question.answer, missing):
         found[name] = future.result()
         questions[name].keep(found[name])
-        told(len(found), len(questions), name)
+        report(len(found), len(questions), name)
     _LAST_PRESS.clear()  # where the executor is this process
     return found

@@ -31,7 +31,7 @@ STRAIGHT_TOLERANCE = 1e-4
 SMALL_CURVE_SHARE = 1e-2
 """Of the largest of its kind: below it a curve is compared with this instead of its own largest value."""
 FIRST_PARTS, HUM_PARTS, MOST_REFINEMENTS, MOST_TIMES, SAME_TIME = 4, 16, 45, 20_000, 1e-13
-TINY = 1e-300
+SMALLEST_DIVISOR = 1e-300
 INTERPOLATION_SAFETY = 2.0
 """Of what straight lines and a soft touch change: with 1.5, 54 of 58 were covered, the others by 0.75 to 0.97."""
 
@@ -208,4 +208,4 @@ def _relative_deviations(off: Floats, of: Floats, axis: int) -> Floats:
 def _reference_sizes(curves: Floats, axis: int) -> Floats:
     """Largest value of each curve, or a share of that of all where it is smaller."""
     each = np.abs(curves).max(axis=axis)
-    return np.asarray(np.maximum(np.maximum(each, SMALL_CURVE_SHARE * each.max(initial=0.0)), TINY))
+    return np.asarray(np.maximum(np.maximum(each, SMALL_CURVE_SHARE * each.max(initial=0.0)), SMALLEST_DIVISOR))

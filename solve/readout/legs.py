@@ -26,7 +26,7 @@ CORNER_RATE_RATIO = 2.0
 """Ratio of two rates of loading from which relaxing stress has a corner between them that counts."""
 CORNER_RATE_SHARE = 0.3
 """Of the fastest rate: below it no change counts, such as near the top of a sampled sine."""
-ROUND_OFF = 1e-9
+COORDINATE_ROUND_OFF = 1e-9
 EVEN_TOUCH_GROWTH = 0.1
 Coordinate = Callable[[Floats], Floats]
 Interpolation = Callable[[Floats, Floats], Coordinate]
@@ -94,7 +94,7 @@ def _in_rising_order(at: Floats, known: Floats) -> tuple[Floats, Floats]:
     """States (s,) and (s, k) in rising order, none of them twice."""
     if at[-1] < at[0]:
         at, known = at[::-1], known[::-1]
-    fresh = np.append(True, np.diff(at) > ROUND_OFF * max(at[-1] - at[0], ROUND_OFF))
+    fresh = np.append(True, np.diff(at) > COORDINATE_ROUND_OFF * max(at[-1] - at[0], COORDINATE_ROUND_OFF))
     return at[fresh], known[fresh]
 
 
@@ -111,7 +111,7 @@ def cubic_curve(at: Floats, known: Floats) -> Coordinate:
         return lambda where: np.repeat(known, len(where), axis=0)
     slopes = np.gradient(known, at, axis=0, edge_order=2 if len(at) > 2 else 1)
     change, size = np.abs(np.diff(known[:, 1:], axis=0)), np.abs(known[:, 1:]).max(axis=0)
-    idle = (change <= ROUND_OFF * size).all(axis=1)
+    idle = (change <= COORDINATE_ROUND_OFF * size).all(axis=1)
     slopes[np.append(idle, False) | np.append(False, idle)] = 0.0  # clear of the segment nothing swings below zero
     curve = CubicHermiteSpline(at, known, slopes)
     return lambda where: np.asarray(curve(where))
@@ -142,14 +142,15 @@ def _untimed_legs(done: Floats, press: Press, waveform: Waveform, known: Floats)
 
     done : (t,) progress of the states as in PressResult.
     """
-    pressed = done <= 1.0 + ROUND_OFF
+    pressed = done <= 1.0 + COORDINATE_ROUND_OFF
     begin, end = float(corners_s(waveform)[0]), duration_s(waveform)
     reached = float(done[pressed][-1])
-    if not reached >= float(fraction(waveform, corners_s(waveform)).max()) * (1.0 - ROUND_OFF):  # it stopped short
+    largest = float(fraction(waveform, corners_s(waveform)).max())
+    if not reached >= largest * (1.0 - COORDINATE_ROUND_OFF):  # it stopped short
         end = float(first_time_s(waveform, np.array([reached]))[0])
     legs = [PressLeg(begin, end, lambda time: fraction(waveform, time), done[pressed], known[pressed])]
     for number, (start, stop) in enumerate(pairwise(slide_s(press)), start=1):
-        on = (done >= number - ROUND_OFF) & (done <= number + 1 + ROUND_OFF)
+        on = (done >= number - COORDINATE_ROUND_OFF) & (done <= number + 1 + COORDINATE_ROUND_OFF)
         if on.sum() < 2:
             break
         leg_s = stop - start
@@ -162,15 +163,15 @@ def _legs_between_turns(time_s: Floats, press: Press, waveform: Waveform, known:
     """Legs between the turns of the waveform and the waypoints of a slide, with the states of each."""
     edges = np.union1d(_turns_s(waveform), slide_s(press)) if press.path_xy_mm else _turns_s(waveform)
     begin, end = time_s[0], time_s[-1]
-    apart = np.diff(edges, prepend=-np.inf) > ROUND_OFF * (end - begin)
-    edges = np.append(edges[apart & (edges < end - ROUND_OFF * (end - begin))], end)
+    apart = np.diff(edges, prepend=-np.inf) > COORDINATE_ROUND_OFF * (end - begin)
+    edges = np.append(edges[apart & (edges < end - COORDINATE_ROUND_OFF * (end - begin))], end)
     legs = []
     for begin, stop in pairwise(edges):
-        slack = ROUND_OFF * (stop - begin)
+        slack = COORDINATE_ROUND_OFF * (stop - begin)
         on = (time_s >= begin - slack) & (time_s <= stop + slack)
         drive = fraction(waveform, time_s[on])
         steps = np.diff(drive)
-        one_way = bool((steps > ROUND_OFF).all() or (steps < -ROUND_OFF).all())
+        one_way = bool((steps > COORDINATE_ROUND_OFF).all() or (steps < -COORDINATE_ROUND_OFF).all())
         along: Coordinate = (lambda time: fraction(waveform, time)) if one_way else (lambda time: time)
         legs.append(PressLeg(float(begin), float(stop), along, drive if one_way else time_s[on], known[on]))
     return legs

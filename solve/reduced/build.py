@@ -1,8 +1,8 @@
 """Make a reduced model from presses of the 3D model with memories that do not fade.
 
-One elastic press in FINER times as many steps; for each layer that may relax, presses with the memory of a hold at
-full depth, as it begins and as it ends, with half of that, and with the memory of a hold midway; for each pair of
-layers a press with the memories of both: 1 + 4 k + k (k - 1) / 2 presses for k layers.
+One elastic press in ELASTIC_NODES_FACTOR times as many steps; for each layer that may relax, presses with the memory of
+a hold at full depth, as it begins and as it ends, with half of that, and with the memory of a hold midway; for each
+pair of layers a press with the memories of both: 1 + 4 k + k (k - 1) / 2 presses for k layers.
 Prony series, rig and circuit come in only when the model is asked, so that they can be changed freely.
 """
 
@@ -21,7 +21,7 @@ from solve.model import Model, Press
 from solve.physics import Physics
 from solve.reduced.accuracy import measure_accuracy
 from solve.reduced.cache import model_key, recall_or_make
-from solve.reduced.fit import FINER, fit
+from solve.reduced.fit import ELASTIC_NODES_FACTOR, fit
 from solve.reduced.frozen_memory import Frozen
 from solve.reduced.model import ReducedModel, structure_key
 from solve.reduced.response import Accuracy
@@ -124,7 +124,7 @@ def _samples(sampler: Sampler, relaxing: Mapping[str, float]) -> Iterator[Sample
     The memory of a long hold is the share times the elastic stress that goes with that memory: one step of the fixed
     point is taken.
     """
-    elastic = sampler.press({}, FINER)
+    elastic = sampler.press({}, ELASTIC_NODES_FACTOR)
     yield elastic.sample
     fields, plain = elastic.fields, elastic.course
     middle = round(len(fields) * 0.6)

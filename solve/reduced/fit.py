@@ -19,7 +19,8 @@ from solve.reduced.modes import leading_modes
 from solve.reduced.sampling import CROWDING, Sample
 
 CELLS = 1024
-FINER = 3  # depth nodes of the elastic press to one of the others: a coarse contact surface touches node by node
+ELASTIC_NODES_FACTOR = 3
+"""Depth nodes of the elastic press to one of the others: a coarse contact surface touches node by node."""
 MODES = 3  # of each layer at most: more would be directions that the samples do not tell apart
 
 
@@ -54,7 +55,7 @@ def fit(samples: Sequence[Sample], layers: Sequence[str]) -> ResponseTable:
     outputs = [np.concatenate([s.outputs, *own], axis=1) for s, *own in zip(samples, *stress, strict=True)]
     alpha = np.concatenate(memory, axis=1) if memory else np.zeros((len(samples), 0))
     features = np.concatenate([alpha, alpha[:, pairs[:, 0]] * alpha[:, pairs[:, 1]]], axis=1)
-    changes = [now - outputs[0][::FINER] for now in outputs[1:]]
+    changes = [now - outputs[0][::ELASTIC_NODES_FACTOR] for now in outputs[1:]]
     touch = np.array([s.touch_mm for s in samples])
     parts, moved = [_table(outputs[0])[:, None]], touch[:1]
     if layers:

@@ -18,7 +18,7 @@ from solve.materials.prony import branch_stress
 from solve.reduced.table_reading import balance, first_touch, force_and_slope, read_outputs, set_features
 
 BY_DEPTH, BY_FORCE = 0, 1
-FINE, TOO_DEEP = 0, 1
+WITHIN_TABLE, TOO_DEEP = 0, 1
 AMPLITUDE_TOLERANCE = 1e-10  # of the amplitudes
 MOST_FIXED_POINT_ROUNDS = 60
 SUBSTEP_PHASE = 0.25  # of the rig's fastest oscillation in one sub-step; central differences are stable up to 2
@@ -112,11 +112,12 @@ def follow(
     time: Floats, drive: Floats, kind: int, compliance: float, mass: float, table: Floats, touch: Floats, full: float,
     pairs: Ints, start: Ints, moduli: Floats, times: Floats, layer: Ints, observed: int, path: Floats, outputs: Floats,
 ) -> int:  # fmt: skip
-    """Fill the dot's path (t,) in mm and the observed outputs (t, observed) over time (t,) in s; FINE or TOO_DEEP.
+    """Fill the dot's path (t,) in mm and the observed outputs (t, observed) over time (t,) in s; returns a status.
 
     drive (t,) mm or N by kind; compliance mm/N; mass N s2/mm; table (cells + 1, features, outputs), outputs being
     force, area, charges and amplitudes; touch (features,) mm; full mm; pairs (p, 2) of amplitudes; start (k + 1,)
     first amplitude of each layer; moduli, times, layer (b,) of each Prony branch. At rest before the first sample.
+    The status is WITHIN_TABLE or TOO_DEEP.
     """
     modes, branches = table.shape[2] - observed, len(moduli)
     alpha, last_alpha, known, instant = np.zeros(modes), np.zeros(modes), np.zeros(modes), np.zeros(modes)
@@ -156,4 +157,4 @@ def follow(
         _remember(layer, start, fade, gain, memory, old, values[observed:])
         path[n] = motion[0]
         outputs[n] = values[:observed]
-    return FINE
+    return WITHIN_TABLE

@@ -23,7 +23,7 @@ MOST_IDLE_STEPS = 60  # steps in which the unbalanced forces must fall once by a
 MAX_REFUSED = 20  # steps that turn an element inside out, one after the other: it holds whatever the damping
 NEWTON_RESIDUAL = 1e-5  # relative residual from which Newton goes on alone
 LINEAR_TOLERANCE = 1e-6
-TINY = 1e-300
+SMALLEST_DIVISOR = 1e-300
 
 
 def snap(system: System, linear: LinearSolver, load: Load, time: float, previous: State) -> State:
@@ -62,7 +62,7 @@ def _fall(system: System, linear: LinearSolver, load: Load, time: float, previou
             refused += 1
             continue
         x, now, refused = x + change, then, 0
-        ratio = _unbalanced_force(system, now) / max(unbalanced, TINY)
+        ratio = _unbalanced_force(system, now) / max(unbalanced, SMALLEST_DIVISOR)
         dampers *= np.clip(ratio, LEAST_DAMPING_RATIO, MOST_DAMPING_RATIO)
     raise NoEquilibriumError(f"no equilibrium in {step + 1} damped steps either", x, None)
 

@@ -19,7 +19,7 @@ from solve.solution.work import opens_too_coarsely, with_work
 from solve.system import Load, State, System
 
 MAX_APPROACHES = 20
-ROUND_OFF = 1e-9  # of the segment's length
+APPROACH_ROUND_OFF = 1e-9  # of the segment's length
 SMALLEST_SUBSTEP = 1.0 / 64.0  # for convergence; one that time asks to be smaller than that, by as much again
 SMALLEST_IN_TIME = 1.0 / 128.0  # for the error of the time integration
 TIME_TOLERANCE = 1e-3  # of the largest stress, or of the dot's path, in one sub-step
@@ -142,7 +142,7 @@ def _move_to_contact(system: System, last: State, load: Load, time: float, nodes
         nearest = np.sort(gap)[min(nodes, len(gap)) - 1]
         if nearest < 0.0:
             break
-        x[approach] += 1.01 * nearest + ROUND_OFF
+        x[approach] += 1.01 * nearest + APPROACH_ROUND_OFF
     return x
 
 

@@ -13,9 +13,10 @@ from solve.system import Evaluation, Load, State, System
 from solve.terms.solid import InvertedElementError
 
 LOG = logging.getLogger(__name__)
-TOLERANCE = 1e-10  # of the load: differences of presses, such as a diagnosis takes, are to tell 1e-6 of a parameter
-ROUND_OFF = 1e-12  # of the largest displacement: a smaller correction changes nothing
-ROUNDED_TOLERANCE = 1e-6  # a stiff film on a soft foam: its own round-off may exceed TOLERANCE of a small load
+RESIDUAL_TOLERANCE = 1e-10
+"""Of the load: differences of presses, such as a diagnosis takes, are to tell 1e-6 of a parameter."""
+CORRECTION_ROUND_OFF = 1e-12  # of the largest displacement: a smaller correction changes nothing
+ROUNDED_TOLERANCE = 1e-6  # a stiff film on a soft foam: its own round-off may exceed RESIDUAL_TOLERANCE of a small load
 LEAST_LOAD = 1e-5  # solver units: what is less, the first touch of a moving mass, counts as this much
 MAX_ITERATIONS = 25
 MAX_HALVINGS = 6
@@ -27,7 +28,7 @@ one from a start that the past foretold, which is wrong most of all in where con
 MAX_SETTLING = 10  # of the constraints in one step
 LEAST_LINEAR_GAIN = 0.1  # what a linear solution gains at least
 FORCING = 0.03  # residual of a linear solution over the square of that of Newton's iteration, which falls with it
-LAST_LINEAR_SHARE = 0.3  # of TOLERANCE: what the last linear solution is to leave
+LAST_LINEAR_SHARE = 0.3  # of RESIDUAL_TOLERANCE: what the last linear solution is to leave
 LOOSEST_LINEAR_RESIDUAL = 1e-2  # far from the end, relative to Newton's residual and to the load
 
 
@@ -53,8 +54,8 @@ def equilibrate(
             relative = norm / max(scale, LEAST_LOAD)
             LOG.debug("Newton iteration %d at time %.4g: relative residual %.2g", iteration, time, relative)
             settled = status is None or np.array_equal(status, now.status)
-            exact = correction <= ROUND_OFF and relative <= ROUNDED_TOLERANCE
-            if (relative <= TOLERANCE or exact) and settled:
+            exact = correction <= CORRECTION_ROUND_OFF and relative <= ROUNDED_TOLERANCE
+            if (relative <= RESIDUAL_TOLERANCE or exact) and settled:
                 converged = State(time, load, x, previous.histories, scale, iteration, relative)
                 if rim_met(system, converged, load, ALLOWED_OVERLAP) is not None:
                     raise NoEquilibriumError("the dot overlaps the held rim", x, None)
@@ -65,7 +66,7 @@ def equilibrate(
             similar = linear.may_reuse(now.tangent, None if status is None else int(np.sum(status != now.status)))
             # inexact Newton: the linear residual need fall neither faster than the nonlinear one nor below its goal
             loosest = min(FORCING * relative, LOOSEST_LINEAR_RESIDUAL / max(relative, 1.0))
-            last = LAST_LINEAR_SHARE * TOLERANCE / max(relative, 1e-300)
+            last = LAST_LINEAR_SHARE * RESIDUAL_TOLERANCE / max(relative, 1e-300)
             tolerance = min(max(loosest, last), LOOSEST_LINEAR_RESIDUAL)
             step = linear.solve(now.tangent, -now.residual, tolerance, similar)
             share, before = circles.share(now.status, norm), x

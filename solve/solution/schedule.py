@@ -19,8 +19,8 @@ from solve.waveform import Waveform
 
 LARGEST_CELL = 1e12
 BISECTIONS = 60
-TINY = 1e-300
-ROUND_OFF = 1e-9
+SMALLEST_DIVISOR = 1e-300
+PROGRESS_ROUND_OFF = 1e-9
 
 
 def duration_s(waveform: Waveform) -> float:
@@ -213,7 +213,7 @@ def _solution_times(waveform: Waveform, steps: int) -> tuple[Floats, Bools]:
     counts = np.full(len(corners) - 1, steps)
     if waveform.shape == "file":
         drive = fraction(waveform, corners)
-        change = np.abs(np.diff(drive)) / max(float(drive.max()), TINY)
+        change = np.abs(np.diff(drive)) / max(float(drive.max()), SMALLEST_DIVISOR)
         lasts = np.diff(corners) / (corners[-1] - corners[0])
         counts = np.maximum(1, np.ceil(steps * np.maximum(change, lasts) - 1e-9)).astype(int)
     pieces = [np.linspace(a, b, n + 1)[1:] for (a, b), n in zip(pairwise(corners), counts, strict=True)]
@@ -235,7 +235,7 @@ def first_reached_s(progress: Floats, press: Press) -> Floats:
     slides = slide_s(press)
     along = np.interp(progress, 1.0 + np.arange(len(slides)), slides)
     pressed = first_time_s(press.waveform or Waveform(), np.minimum(progress, 1.0))
-    return np.where(progress <= 1.0 + ROUND_OFF, pressed, along)
+    return np.where(progress <= 1.0 + PROGRESS_ROUND_OFF, pressed, along)
 
 
 def _slide_targets(press: Press, start: Target, leg_s: float, unit_length: float) -> list[Target]:

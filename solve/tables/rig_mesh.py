@@ -22,14 +22,14 @@ MeshSettings: TypeAlias = MeshOptions
 """What a diagnosis holds and hands on without looking into it."""
 
 
-LARGEST = 3000  # nodes: some 8,000 unknowns, and 2 s a press on one core
-COARSER = 1.06
-SAVES = 0.9  # of the nodes: what a coarser mesh has at most, or it is not worth its sizes
+MOST_NODES = 3000  # nodes: some 8,000 unknowns, and 2 s a press on one core
+LEAST_SIZE_FACTOR = 1.06
+WORTH_NODES_SHARE = 0.9  # of the nodes: what a coarser mesh has at most, or it is not worth its sizes
 NODES_PER_CUBE = 8  # of an element's size: one corner and seven mid-sides
 
 
 def rig_mesh(
-    model: Model, options: MeshOptions, largest: int = LARGEST, coarsen: bool = True
+    model: Model, options: MeshOptions, largest: int = MOST_NODES, coarsen: bool = True
 ) -> tuple[TetMesh, MeshOptions]:
     """Mesh whose whole has at most a number of nodes, and its sizes, which grow together until it is small enough.
 
@@ -45,16 +45,17 @@ def rig_mesh(
         made, count = _build_mesh(model, options)
         if count <= largest or options.contact_element_size_mm > model.segment.length_mm:
             return made, options
-        options = options.scale_sizes(max(COARSER, 0.7 * (count / largest) ** (1.0 / 3.0)))
+        options = options.scale_sizes(max(LEAST_SIZE_FACTOR, 0.7 * (count / largest) ** (1.0 / 3.0)))
 
 
 def _dome_mesh(model: Model, options: MeshOptions, largest: int) -> tuple[TetMesh, MeshOptions]:
     """A mesh of a dome by the user's mesher: coarser in few attempts, as each takes seconds."""
     made, count = _build_mesh(model, options)
     while count > largest:
-        coarser = options.scale_sizes(max(COARSER, (count / largest) ** 0.6))  # nodes grow with size to about -1.7
+        factor = max(LEAST_SIZE_FACTOR, (count / largest) ** 0.6)  # nodes grow with size to about -1.7
+        coarser = options.scale_sizes(factor)
         other, fewer = _build_mesh(model, coarser)
-        if fewer > SAVES * count:
+        if fewer > WORTH_NODES_SHARE * count:
             break
         made, count, options = other, fewer, coarser
     return made, options
@@ -84,7 +85,7 @@ def finer_mesh(model: Model, options: MeshOptions, factor: float, largest: int) 
     return (crowded_mesh(made, model.segment) if options.mesher == "layered" else made), options
 
 
-def mesh_of(model: Model, known: Model, tet_mesh: TetMesh, options: MeshOptions, largest: int = LARGEST) -> TetMesh:
+def mesh_of(model: Model, known: Model, tet_mesh: TetMesh, options: MeshOptions, largest: int = MOST_NODES) -> TetMesh:
     """The mesh of a changed model: the known one's, moved with its layers, unless it is of another dimension.
 
     That has at most largest nodes, crowded towards held sides: nothing is subtracted from it on a mesh of its own.

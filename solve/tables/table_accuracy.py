@@ -9,7 +9,7 @@ LEAST_ERROR = 0.003
 """What the table and its interpolation add: see tests/diagnose/segment."""
 SMALL_CHARGE = 0.02
 """Of the largest charge: one that changes sign is not relative to itself there."""
-SEEN: Floats = np.linspace(0.2, 1.0, 9)
+COMPARED_SHARES: Floats = np.linspace(0.2, 1.0, 9)
 """Shares of the depth at which both meshes are compared."""
 
 
@@ -21,7 +21,7 @@ def accuracy(middle: Smooth, fine: Smooth, ratio: float) -> dict[str, float]:
     standard error of the smoothing.
     """
     left = ratio**2 / (1.0 - ratio**2)
-    at_middle, at_fine = middle.at(SEEN), fine.at(SEEN)
+    at_middle, at_fine = middle.at(COMPARED_SHARES), fine.at(COMPARED_SHARES)
     size = np.abs(at_fine)
     size[:, 2:] = size[:, 2:].max(axis=1, keepdims=True)
     size = np.maximum(size, SMALL_CHARGE * size.max(axis=0))

@@ -31,8 +31,8 @@ def _outputs_of(job: DepthPress) -> Floats:
 
 
 WORTH_A_PROCESS = 4  # presses: a process takes seconds to start
-LARGE = 3000  # nodes: one such press is worth a process, as are the many of a reduction
-WHAT = "pressing the 3D model"
+LARGE_MESH_NODES = 3000  # nodes: one such press is worth a process, as are the many of a reduction
+PROGRESS_WORDS = "pressing the 3D model"
 
 
 def run_all(
@@ -51,7 +51,7 @@ def run_all(
     missing: dict[str, DepthPress | Reduction] = {f"reduction {n}": job for n, job in enumerate(first)}
     missing |= dict(left)
     if missing:
-        report(WHAT, 0, len(missing))
+        report(PROGRESS_WORDS, 0, len(missing))
     places = executor if _are_worth_processes(missing) else HERE
     calls = {name: (job,) for name, job in missing.items()}
     for number, (name, future) in enumerate(completed_calls(places, answer, calls), start=1):
@@ -63,7 +63,7 @@ def run_all(
             raise NoEquilibriumError(outputs, np.zeros(0), None)
         else:
             job.keep(outputs)
-        report(WHAT, number, len(missing))
+        report(PROGRESS_WORDS, number, len(missing))
     return [found[name] for name in names]
 
 
@@ -74,5 +74,5 @@ def _effort(job: DepthPress) -> float:
 
 def _are_worth_processes(jobs: Mapping[str, DepthPress | Reduction]) -> bool:
     """Whether these presses take longer than two processes to start."""
-    large = sum(isinstance(job, Reduction) or len(job.tet_mesh.points_mm) > LARGE for job in jobs.values())
+    large = sum(isinstance(job, Reduction) or len(job.tet_mesh.points_mm) > LARGE_MESH_NODES for job in jobs.values())
     return max(large, len(jobs) // WORTH_A_PROCESS) > 1

@@ -11,10 +11,10 @@ from softdot.studies.paper.beyond.trials import DesignTrial, solve_trials
 from softdot.studies.paper.presses import NotSolvedError
 from softdot.studies.paper.segment import Reading
 
-FINER = {"element_size_mm": 0.5, "contact_element_size_mm": 0.25}
+FINER_SIZES_MM = {"element_size_mm": 0.5, "contact_element_size_mm": 0.25}
 MODELS: Mapping[str, tuple[Reading, Mapping[str, Any]]] = {
-    "pytetwild": ("solid", {**FINER, "mesher": "pytetwild"}),
-    "layered": ("solid", {**FINER, "mesher": "layered"}),
+    "pytetwild": ("solid", {**FINER_SIZES_MM, "mesher": "pytetwild"}),
+    "layered": ("solid", {**FINER_SIZES_MM, "mesher": "layered"}),
     "cross-section": ("plane-strain", SLICE_MESH),
 }
 MESHERS = ("pytetwild", "layered")

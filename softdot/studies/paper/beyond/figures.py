@@ -9,7 +9,7 @@ import numpy as np
 from softdot.studies.paper.beyond.comparison import MESHERS
 from softdot.studies.paper.beyond.elastic_sides import STIFFNESS_N_PER_MM3, WALLS, Curve
 from softdot.studies.paper.beyond.ranking import CORRECTED, WITHOUT_FILM, Ranking, correlations, predicted_V, voltages
-from softdot.studies.paper.beyond.search import FIRST, GOALS, Search
+from softdot.studies.paper.beyond.search import FIRST_TRIALS, GOALS, Search
 from softdot.studies.paper.beyond.trials import BOUNDARIES, DesignPress, DesignTrial
 from softdot.studies.paper.drawing import CLAMPED, FREE, PAPER, SOFT, label, new_figure, save
 
@@ -90,7 +90,7 @@ def _trajectory(panel: Any, search: Search) -> None:
     panel.plot(numbers[allowed], worse[allowed], "o", color=FREE, ms=5, label="within the limits")
     panel.step(numbers, np.maximum.accumulate(np.where(allowed, worse, 0.0)), where="post", color=FREE, lw=1.2)
     panel.axhline(search.papers.worse_V(), color=CLAMPED, lw=1.2, ls="--", label="the paper's final design")
-    panel.axvline(FIRST + 0.5, color=SOFT, lw=0.8, ls=":")
+    panel.axvline(FIRST_TRIALS + 0.5, color=SOFT, lw=0.8, ls=":")
     panel.set_ylim(0.0, 2.5 * max(worse[allowed].max(initial=0.0), search.papers.worse_V()))
     label(panel, "design tried", "worse of the two voltages (V)", "open circuit, 3D")
     panel.legend(frameon=False, fontsize=9, loc="upper left")

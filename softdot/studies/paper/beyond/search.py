@@ -21,7 +21,7 @@ MESH = {"element_size_mm": 0.8, "contact_element_size_mm": 0.4, "mesher": "layer
 CABLE_PF = 100.0
 GOALS = {"open circuit": 0.0, "behind 100 pF": CABLE_PF}
 """What the voltage is taken behind: nothing, or a metre of cable with an amplifier that loses no charge."""
-FIRST, ROUNDS, EACH = 8, 8, 3
+FIRST_TRIALS, SEARCH_ROUNDS, TRIALS_A_ROUND = 8, 8, 3
 FORCE_MARGIN, STRESS_MARGIN = 0.98, 0.9
 """Shares of the limits that the search uses: by so much force and film stress differ between meshes."""
 CANDIDATES_LOG2, NEAR = 11, 1024
@@ -48,7 +48,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class Search:
-    """What was tried, in order: the paper's final design, FIRST designs that fill the space, then the rounds."""
+    """What was tried, in order: the paper's final design, FIRST_TRIALS designs that fill the space, then the rounds."""
 
     papers: DesignTrial
     trials: Sequence[DesignTrial]
@@ -63,9 +63,9 @@ class Search:
 
 def search(progress: Progress, executor: Executor, constants: dict[str, float], seed: int = 2) -> Search:
     """Search in 3D under a round dot. constants : of the corrected parameters, which carry the trend."""
-    papers, *trials = solve_trials([PAPERS, *sample(6, seed)[:FIRST]], "solid", MESH, progress, executor)
+    papers, *trials = solve_trials([PAPERS, *sample(6, seed)[:FIRST_TRIALS]], "solid", MESH, progress, executor)
     limits = limits_of(papers)
-    for number in range(ROUNDS):
+    for number in range(SEARCH_ROUNDS):
         surrogate = Surrogate([papers, *trials], constants)
         chosen = propose(surrogate, [papers, *trials], limits, number)
         trials += solve_trials(chosen, "solid", MESH, progress, executor)
@@ -85,12 +85,12 @@ def to_beat(trials: Sequence[DesignTrial], limits: Limits, cable_pF: float) -> D
 
 
 def propose(surrogate: Surrogate, trials: Sequence[DesignTrial], limits: Limits, number: int) -> list[Design]:
-    """EACH designs for every goal with the largest expected improvement on the best so far."""
+    """TRIALS_A_ROUND designs for every goal with the largest expected improvement on the best so far."""
     pool = candidates(trials, limits, number)
     known = [trial.design for trial in trials]
     for cable_pF in GOALS.values():
         gains = expected_gain(surrogate, pool, trials, limits, cable_pF)
-        chosen = choose_apart(gains, coordinates(pool), coordinates(known), EACH, APART)
+        chosen = choose_apart(gains, coordinates(pool), coordinates(known), TRIALS_A_ROUND, APART)
         known += [pool[one] for one in chosen]
     return known[len(trials) :]
 

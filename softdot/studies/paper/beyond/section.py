@@ -13,7 +13,7 @@ from softdot.studies.paper.beyond.comparison import MESHERS
 from softdot.studies.paper.beyond.designs import HIGH, LOW, PAPERS
 from softdot.studies.paper.beyond.elastic_sides import STIFFNESS_N_PER_MM3, WALLS, Curve
 from softdot.studies.paper.beyond.ranking import CORRECTED, FOUR, SEVEN, correlations, scatter
-from softdot.studies.paper.beyond.search import CABLE_PF, FIRST, FORCE_MARGIN, GOALS, STRESS_MARGIN
+from softdot.studies.paper.beyond.search import CABLE_PF, FIRST_TRIALS, FORCE_MARGIN, GOALS, STRESS_MARGIN
 from softdot.studies.paper.beyond.study import Beyond, solve_beyond
 from softdot.studies.paper.beyond.tolerance import COPIES, made_worse_V
 from softdot.studies.paper.beyond.trials import BOUNDARIES, DesignTrial
@@ -151,14 +151,14 @@ def _design(study: Beyond, folder: Path) -> list[Block]:
         f"largest film stress of the paper's final design, which is below yield. The search keeps "
         f"{100 * FORCE_MARGIN:.0f} and {100 * STRESS_MARGIN:.0f} % of them ({limits.force_N:.2g} N, "
         f"{limits.film_stress_MPa:.2g} MPa on its coarse mesh), as another mesh gives slightly other numbers.",
-        f"After {FIRST} designs that fill the space, Gaussian processes of voltage, force and stress, with the "
+        f"After {FIRST_TRIALS} designs that fill the space, Gaussian processes of voltage, force and stress, with the "
         "corrected parameters as trend, name the designs with the largest expected improvement; "
         "each is solved and teaches them.",
         Figure(
             figures.draw_search(search, folder),
             "The search",
-            f"Left: every design tried, in order (dotted: end of the first {FIRST}). Crosses break a limit. Right: "
-            "free against clamped; above the dotted diagonal the free boundary is the worse one.",
+            f"Left: every design tried, in order (dotted: end of the first {FIRST_TRIALS}). Crosses break a limit. "
+            "Right: free against clamped; above the dotted diagonal the free boundary is the worse one.",
         ),
         tables.designs(named),
         Figure(

@@ -9,7 +9,7 @@ from scipy.signal import bessel, butter, lfilter, sosfilt
 
 from softdot.studies.proof.world.arrays import Floats
 
-FINER = 8
+SAMPLES_FACTOR = 8
 
 
 @dataclass(frozen=True)
@@ -41,10 +41,10 @@ class Amplifier:
 
     def voltage(self, time_s: Floats, charge_pC: Floats, film_pF: float, hum_phase: float) -> Floats:
         """Voltage (t,) for the charge (t,) of the film at even times (t,), from rest."""
-        rate = FINER * (len(time_s) - 1) / (time_s[-1] - time_s[0])
-        fine = time_s[0] + np.arange(FINER * (len(time_s) - 1) + 1) / rate
+        rate = SAMPLES_FACTOR * (len(time_s) - 1) / (time_s[-1] - time_s[0])
+        fine = time_s[0] + np.arange(SAMPLES_FACTOR * (len(time_s) - 1) + 1) / rate
         voltage = self.input_V(CubicSpline(time_s, charge_pC)(fine), film_pF, rate)
-        return self.behind(voltage, fine, rate, hum_phase)[::FINER]
+        return self.behind(voltage, fine, rate, hum_phase)[::SAMPLES_FACTOR]
 
     def behind(self, voltage: Floats, fine_s: Floats, rate_Hz: float, hum_phase: float) -> Floats:
         """Voltage (n,) behind everything that follows the input, on its own fine grid (n,)."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from softdot.studies.proof.world.amplifier import FINER, Amplifier, Filter
+from softdot.studies.proof.world.amplifier import SAMPLES_FACTOR, Amplifier, Filter
 from softdot.studies.proof.world.arrays import Floats
 
 PASSES_HZ = 40.0
@@ -51,8 +51,8 @@ def voltages(
 
     amplifier : each channel has one. phase : of the mains.
     """
-    rate = FINER * (len(time_s) - 1) / (time_s[-1] - time_s[0])
-    fine = time_s[0] + np.arange(FINER * (len(time_s) - 1) + 1) / rate
+    rate = SAMPLES_FACTOR * (len(time_s) - 1) / (time_s[-1] - time_s[0])
+    fine = time_s[0] + np.arange(SAMPLES_FACTOR * (len(time_s) - 1) + 1) / rate
     own = [amplifier.leaking(wiring.leak_MOhm.get(n)) for n in range(len(film_pF))]
     charge = CubicSpline(time_s, charge_pC)(fine)
     if wiring.strays:
@@ -61,7 +61,7 @@ def voltages(
         inputs = np.array([one.input_V(q, c, rate) for one, q, c in zip(own, charge.T, film_pF, strict=True)])
     behind = [amplifier.behind(voltage, fine, rate, phase) for voltage in inputs]
     return np.stack([wiring.slow[n].apply(v, rate) if n in wiring.slow else v for n, v in enumerate(behind)], axis=1)[
-        ::FINER
+        ::SAMPLES_FACTOR
     ]
 
 

@@ -200,7 +200,7 @@ EFFECTS: Mapping[str, Effect] = {effect.name: effect for effect in LISTED}
 KNOWN = tuple(effect.name for effect in EFFECTS.values() if effect.mechanism)
 UNKNOWN = tuple(effect.name for effect in EFFECTS.values() if not effect.mechanism)
 STAGED = 8
-"""The first so many of the known ones come first."""
+"""Number of the known effects that come first."""
 
 
 def apply_effects(reality: Reality, bench: Bench, strengths: Mapping[str, float]) -> Reality:

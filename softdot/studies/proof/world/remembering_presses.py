@@ -1,8 +1,8 @@
 """Presses with memory at any strength, from three that are solved through time and kept.
 
 The difference to the elastic press is interpolated over the strength by the parabola through none, half and full
-(NODES). It is solved along the path that the stage was asked for, on larger elements (COARSER), by which it changes by
-1 %, and scaled by the elastic answer of the specimen along its own path over that of the nominal stack.
+(NODES). It is solved along the path that the stage was asked for, on larger elements (MESH_SIZE_SHARE), by which it
+changes by 1 %, and scaled by the elastic answer of the specimen along its own path over that of the nominal stack.
 """
 
 from dataclasses import dataclass, replace
@@ -15,8 +15,8 @@ from softdot.studies.proof.world.made import Film, Glue, Layer, Made
 from softdot.studies.proof.world.march import Course, table, through_time
 
 NODES = 0.25, 0.5
-COARSER = 0.7
-FAINT = 0.02
+MESH_SIZE_SHARE = 0.7
+FAINT_SIGNAL_SHARE = 0.02
 
 
 def strength(made: Made) -> float:
@@ -59,7 +59,7 @@ def scaled_memory(made: Made, asked: "AskedPath", elastic: Course, nominal: Cour
     value, time = strength(made), asked.time_s
     if value > NODES[-1]:
         raise ValueError(f"a strength of {value:g} is beyond {NODES[-1]:g}")
-    larger = replace(made, fine=COARSER * made.fine)
+    larger = replace(made, fine=MESH_SIZE_SHARE * made.fine)
     yields = made.film.yield_MPa is not None
     solved = [larger] if yields else [with_strength(larger, node) for node in NODES]
     courses = [through_time(one, time, asked.path_mm, asked.before_mm) for one in solved]
@@ -96,6 +96,6 @@ def _add_difference(elastic: Floats, nominal: Floats, difference: Floats) -> Flo
     """Elastic signal plus ratio times the difference: only that is interpolated in time, for the path itself is
     known.
     """
-    faint = FAINT * float(np.abs(nominal).max())
+    faint = FAINT_SIGNAL_SHARE * float(np.abs(nominal).max())
     ratio = np.where(np.abs(nominal) > faint, elastic / np.where(np.abs(nominal) > faint, nominal, 1.0), 1.0)
     return np.asarray(elastic + ratio * difference)

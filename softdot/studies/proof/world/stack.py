@@ -22,7 +22,7 @@ try:
 except ImportError:  # there is no MKL for this processor
     from scipy.sparse.linalg import spsolve
 
-TOLERANCE = 1e-8
+RESIDUAL_TOLERANCE = 1e-8
 MOST_ITERATIONS = 20
 MOST_HALVINGS = 8
 STILL_MM = 1e-3
@@ -101,7 +101,7 @@ class Stack:
         for _ in range(MOST_ITERATIONS):
             residual, matrix, memory = self._assemble(u, came_from, old.memory, depth_mm, step_s)
             size = self._size(residual)
-            if size < TOLERANCE:
+            if size < RESIDUAL_TOLERANCE:
                 way = depth_mm - old.depth_mm
                 if min(depth_mm, old.depth_mm) <= 0.0:
                     return State(u, memory, depth_mm, 0.0 * u)
