@@ -42,7 +42,7 @@ KEYS = (
 
 
 @pytest.fixture
-def checked_design(tmp_path, capfd):
+def checked(tmp_path, capfd):
     def check(text, *more):
         path = tmp_path / "mine.toml"
         path.write_text(text, "utf-8")
