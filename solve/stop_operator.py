@@ -12,13 +12,13 @@ import numpy as np
 from foundation.arrays import Floats
 
 
-def stopped(signal: Floats, limit: float, stiffness: float = 1.0) -> Floats:
-    """Stop (t,) of stiffness times a signal (t,), at most limit either way; nothing at the first sample."""
-    return np.asarray(_stopped(np.ascontiguousarray(signal, dtype=np.float64), limit, stiffness))
+def apply_stop(signal: Floats, limit: float, stiffness: float = 1.0) -> Floats:
+    """Stop operator on a signal (t,) times a stiffness, at most limit either way; zero at the first sample."""
+    return np.asarray(_stop(np.ascontiguousarray(signal, dtype=np.float64), limit, stiffness))
 
 
 @nb.njit(cache=True)
-def _stopped(signal, limit, stiffness):  # type: ignore[no-untyped-def]
+def _stop(signal, limit, stiffness):  # type: ignore[no-untyped-def]
     stop = np.zeros_like(signal)
     for n in range(1, len(signal)):
         moved = stop[n - 1] + stiffness * (signal[n] - signal[n - 1])

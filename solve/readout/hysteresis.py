@@ -12,7 +12,7 @@ import numpy as np
 
 from foundation.arrays import Floats
 from solve.added import Added, TouchedFilm
-from solve.stop_operator import stopped
+from solve.stop_operator import apply_stop
 
 
 @dataclass(frozen=True)
@@ -29,9 +29,9 @@ class FilmHysteresis(Added):
         return not any(self.shares)
 
     def held_back(self, signal: Floats, pC: float) -> Floats:
-        """What is held back (t,) of a signal (t,) in which 1 pC is so much."""
+        """Part (t,) of a signal (t,) that is held back; pC : 1 pC in the unit of the signal."""
         elements = zip(self.shares, self.play_pC, strict=True)
-        each = (share * stopped(signal, play * pC) for share, play in elements)
+        each = (share * apply_stop(signal, play * pC) for share, play in elements)
         return np.asarray(sum(each, np.zeros(len(signal))))
 
     def charge_C(self, film: TouchedFilm) -> Floats:

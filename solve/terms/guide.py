@@ -11,7 +11,7 @@ import numpy as np
 
 from foundation.arrays import Floats
 from solve.added import Added, Motion
-from solve.stop_operator import stopped
+from solve.stop_operator import apply_stop
 
 
 @dataclass(frozen=True)
@@ -34,5 +34,5 @@ class GuideFriction(Added):
     def sliding_force_N(self, path_mm: Floats) -> Floats:
         """Force (t,) in N against motion along a path (t,) in mm, none at its first point."""
         sliders = zip(self.forces_N, self.presliding_mm, strict=True)
-        each = (stopped(path_mm, force, force / presliding) for force, presliding in sliders)
+        each = (apply_stop(path_mm, force, force / presliding) for force, presliding in sliders)
         return np.asarray(sum(each, np.zeros(len(path_mm))))

@@ -76,5 +76,5 @@ class ViscousGuide(TermDefinition):
             yield GuideTerm(make.unknowns.approach, self, 1e-3 / make.units.length, newton)
 
     def force_N(self, motion: Motion) -> Floats:
-        """What it rubs along a prescribed path."""
+        """Friction (t,) in N along a prescribed path."""
         return self.friction(motion.velocity())[0]

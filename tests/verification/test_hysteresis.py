@@ -8,7 +8,7 @@ from diagnose.forward import Setting
 from diagnose.signals.recording import Recording, Run
 from solve.added import TouchedFilm
 from solve.readout.hysteresis import FilmHysteresis
-from solve.stop_operator import stopped
+from solve.stop_operator import apply_stop
 from tests.cases import for_each
 
 TURNS = np.array([0.0, 1.0, -1.0, 1.0, -1.0, 1.0])
@@ -89,7 +89,7 @@ def test_the_same_loop_at_another_rate_has_the_same_plays():
 
 def test_a_stop_is_what_its_play_leaves():
     signal = np.cumsum(np.random.default_rng(2).standard_normal(500))
-    stop = stopped(signal, 1.5)
+    stop = apply_stop(signal, 1.5)
     play = signal - signal[0] - stop
     assert np.abs(stop).max() <= 1.5
     moved = np.abs(np.diff(play)) > 1e-12
