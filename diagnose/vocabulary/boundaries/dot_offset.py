@@ -1,4 +1,4 @@
-"""The dot stands elsewhere: as far aside as half of its contact stays over the segment."""
+"""The dot stands elsewhere: as far aside as half of its contact stays over the segment, and clear of a held rim."""
 
 from collections.abc import Iterator, Sequence
 from math import sqrt
@@ -8,10 +8,13 @@ from diagnose.forward import Candidate, Coordinate
 from diagnose.vocabulary.base import Vocabulary, register
 from diagnose.vocabulary.scene import Scene
 from geometry.dot_size import dot_size
+from geometry.part_checks import covers_footprint
+from geometry.stack import layers
 from solve.mechanisms.boundaries.dot_offset import DOT_OFFSET
 
 NODES = 0.35, 0.7, 1.0  # of the way to the side
 BY_HAND_MM = 0.15, 0.4  # 0.1 to 0.3 by hand
+FREE_OF_RIM = 1.05  # of the half width of the dot at the deepest press
 LEAST_REACH = 0.04  # of the segment, for a dot that stands at its side already
 
 
@@ -36,7 +39,7 @@ def _offset(scene: Scene) -> Candidate:
 def _aside(scene: Scene, axis: int) -> Coordinate:
     segment = scene.model.segment
     size = (segment.length_mm, segment.width_mm)[axis]
-    reach = 0.5 * size - 0.5 * sqrt(min(dot_size(scene.model.dot).radius_mm, size) * scene.depth_mm)  # Hertz
+    reach = 0.5 * size - _clearance_mm(scene)
     at = [scene.model.dot.offset_mm[axis] + place[axis] for place in scene.places]
     low, high = min(-reach - min(at), -LEAST_REACH * size), max(reach - max(at), LEAST_REACH * size)
     name, starts = f"offset_{'xy'[axis]}_mm", [min(start, high) for start in BY_HAND_MM]
@@ -44,6 +47,19 @@ def _aside(scene: Scene, axis: int) -> Coordinate:
         return Coordinate(name, 0.0, high, tuple(starts), tuple(share * high for share in NODES))
     nodes = *(share * low for share in NODES), *(share * high for share in NODES)
     return Coordinate(name, low, high, (starts[0], max(-BY_HAND_MM[0], low)), nodes)
+
+
+def _clearance_mm(scene: Scene) -> float:
+    """Least distance of the dot's middle from a side: of a held rim, which cannot give way, the dot stays clear.
+
+    Elsewhere half of Hertz's radius of contact, sqrt(R d), stays over the segment.
+    """
+    segment, depth = scene.model.segment, scene.depth_mm
+    radius = dot_size(scene.model.dot).radius_mm
+    rim = segment.boundary == "clamped" and layers(segment)[-1].name in segment.held_layers
+    if rim and covers_footprint(segment):
+        return FREE_OF_RIM * sqrt(depth * (2.0 * radius - depth)) if depth < radius else FREE_OF_RIM * radius
+    return 0.5 * sqrt(min(radius, segment.length_mm) * depth)
 
 
 def _is_symmetric(scene: Scene, axis: int) -> bool:

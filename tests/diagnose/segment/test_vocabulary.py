@@ -124,14 +124,19 @@ def test_a_rig_has_the_candidates_that_all_its_aspects_have():
 
 
 @for_each("section", ["solid", "plane-strain"])
-def test_a_dot_is_sought_as_far_aside_as_half_of_its_contact_stays(section):
-    """To one side where the rig is its own mirror image, to both where an electrode, a place or a patch is not."""
+def test_a_dot_is_sought_as_far_aside_as_its_contact_stays_over_the_segment(section):
+    """Clear of a held rim at any depth, at free sides farther.
+
+    To one side where the rig is its own mirror image, to both where an electrode, a place or a patch is not.
+    """
 
     def aside(of):
         return next(c for c in candidates(of) if c.mechanism == "dot-offset")
 
     dot = {"shape": "cap" if section == "solid" else "ridge", "radius_mm": 0.9}
-    both = scene(segment=segment(section=section), dot=dot)
+    held = scene(segment=segment(section=section, boundary="clamped"), dot=dot)
+    assert all(0.5 < c.high < 1.25 - np.sqrt(0.3 * (1.8 - 0.3)) for c in aside(held).coordinates)
+    both = scene(segment=segment(section=section, boundary="free"), dot=dot)
     for coordinate in aside(both).coordinates:
         assert (coordinate.low, coordinate.high) == (0.0, pytest.approx(1.25 - 0.5 * np.sqrt(0.9 * 0.3)))
         assert coordinate.high > 0.9  # of a segment of 2.5 mm
@@ -140,7 +145,8 @@ def test_a_dot_is_sought_as_far_aside_as_half_of_its_contact_stays(section):
     x = aside(placed).coordinates[0]
     assert x.low == pytest.approx(-aside(both).coordinates[0].high)
     assert x.high == pytest.approx(aside(both).coordinates[0].high - 0.3)
-    turned = scene(segment=segment(section=section, film={"thickness_um": 28.0, "draw_angle_deg": 30.0}), dot=dot)
+    drawn = {"thickness_um": 28.0, "draw_angle_deg": 30.0}
+    turned = scene(segment=segment(section=section, film=drawn, boundary="free"), dot=dot)
     assert aside(placed).either_sign == aside(turned).either_sign == ()
 
 
