@@ -70,7 +70,7 @@ def left_of(engine, signal, candidate):
     return tuple(np.linalg.norm(signal - one) / np.linalg.norm(signal) for one in (factor * plain, columns @ plays))
 
 
-def test_plays_at_seven_widths_make_rayleighs_law():
+def test_plays_at_four_widths_make_rayleighs_law():
     """They miss a twentieth of what a charge in proportion to the force does."""
     signal = rayleigh(COURSE, 1.0)
     engine = sensor(signal)
@@ -85,6 +85,15 @@ def test_the_same_loop_at_another_rate_has_the_same_plays():
     (plays,) = (one for one in engine.candidates if one.mechanism == "hysteresis")
     on = [Setting(plays, tuple(0.1 for _ in plays.coordinates))]
     np.testing.assert_allclose(engine.predict(0, on)["voltage_V"], slow.predict(0, on)["voltage_V"], rtol=1e-9)
+
+
+def test_a_push_may_have_another_loop_than_a_pull():
+    """Plays of the positive part leave the pull alone; one that is never crossed takes a share of the push."""
+    on = FilmHysteresis(push_shares=(0.2, 0.3), push_play_pC=(0.1, 5.0))
+    shown = charge(on, COURSE)
+    assert shown[np.argmax(COURSE)] == pytest.approx(1.0 - 0.2 * 0.1 - 0.3)
+    assert shown[np.argmin(COURSE)] == pytest.approx(-1.0 + 0.2 * 0.1)  # what is left of the push
+    np.testing.assert_allclose(np.diff(shown)[COURSE[1:] < 0.0], np.diff(COURSE)[COURSE[1:] < 0.0], atol=1e-12)
 
 
 def test_a_stop_is_what_its_play_leaves():
