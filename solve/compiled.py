@@ -56,3 +56,10 @@ def in_threads(math: Any = False) -> Callable[[Callable[..., Any]], Any]:
 @cache
 def _pool() -> ThreadPoolExecutor:
     return ThreadPoolExecutor(THREADS, "kernel")
+
+
+@piece()
+def copy_numbers(source, target):  # type: ignore[no-untyped-def]
+    """Copy an array (n,) into another: numba's target[:] = source compiles the words of an error, for three seconds."""
+    for k in range(len(target)):
+        target[k] = source[k]

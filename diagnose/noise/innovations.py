@@ -8,6 +8,7 @@ import numba as nb
 import numpy as np
 
 from foundation.arrays import Bools, Floats
+from solve.compiled import copy_numbers, piece
 
 
 @nb.njit(cache=True)
@@ -36,7 +37,7 @@ def innovations(
             continue
         if known >= order:
             for j in range(order):
-                state[j] = values[n - 1 - j]
+                copy_numbers(values[n - 1 - j], state[j])
         if n > 0:
             _predict_state(state, coefficients)
             if known < order:
@@ -54,7 +55,7 @@ def innovations(
     return errors, deviations
 
 
-@nb.njit(cache=True)
+@piece()
 def _predict_state(state: Floats, coefficients: Floats) -> None:
     """Advance the state x (p, k) by one sample, in place: F x with the companion matrix F."""
     order, columns = state.shape
@@ -67,7 +68,7 @@ def _predict_state(state: Floats, coefficients: Floats) -> None:
         state[0, c] = newest
 
 
-@nb.njit(cache=True)
+@piece()
 def _predict_covariance(covariance: Floats, coefficients: Floats, variance: float) -> None:
     """Advance the covariance P (p, p) of the state by one sample, in place: F P F' + Q."""
     order = len(coefficients)
@@ -86,7 +87,7 @@ def _predict_covariance(covariance: Floats, coefficients: Floats, variance: floa
     covariance[0, 0] = corner
 
 
-@nb.njit(cache=True)
+@piece()
 def _reset_covariance(covariance: Floats, variance: float) -> None:
     """Covariance (p, p) where all p samples before are known, in place: only the newest is uncertain."""
     for i in range(len(covariance)):
@@ -95,7 +96,7 @@ def _reset_covariance(covariance: Floats, variance: float) -> None:
     covariance[0, 0] = variance
 
 
-@nb.njit(cache=True)
+@piece()
 def _condition_on_sample(state: Floats, covariance: Floats, error: Floats) -> None:
     """Kalman update of all p samples of the state by the newest one, in place.
 

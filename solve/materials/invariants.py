@@ -77,7 +77,8 @@ def isochoric_stress(cauchy_green: Floats, constants: Floats, power: Power = NO_
     stress = np.empty((len(cauchy_green), 6))
     tangent = np.empty((len(cauchy_green), 6, 6))
     c10, c01, c20, c30 = constants
-    _stress_and_tangent(cauchy_green, c10, c01, c20, c30, *power, stress, tangent)
+    c = np.ascontiguousarray(cauchy_green)  # of another layout the kernel would be compiled once more
+    _stress_and_tangent(c, c10, c01, c20, c30, *power, stress, tangent)
     return stress, tangent
 
 

@@ -112,7 +112,7 @@ def _advance_branch(step, flowed, before, now, a, g):  # type: ignore[no-untyped
 @in_threads()
 def _add_branches(start, stop, cauchy_green, before, flowed, steps, moduli, stress, tangent, new, now):  # type: ignore[no-untyped-def]
     """Stress (n, 6) and tangent (n, 6, 6) of all branches are added; new (n, i, 6) : C_i, now (n, 6) : C^."""
-    ci, a, g = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
+    ci, a, g, gc, x = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
     for n in range(start, stop):
         c = cauchy_green[n]
         j23 = inverse(c, ci) ** (-1.0 / 3.0)
@@ -122,15 +122,22 @@ def _add_branches(start, stop, cauchy_green, before, flowed, steps, moduli, stre
             root, of_now = _advance_branch(steps[b], flowed[n, b], before[n], now[n], a, g)
             for v in range(6):
                 new[n, b, v] = a[I_OF[v], J_OF[v]] / root
-            _add_branch(c, ci, j23, g, of_now / root, moduli[b], stress[n], tangent[n])
+            _add_branch(c, ci, j23, g, of_now / root, moduli[b], gc, x, stress[n], tangent[n])
 
 
 @piece()
-def _add_branch(c, ci, j23, g, h, modulus, stress, tangent):  # type: ignore[no-untyped-def]
-    """Add the stress and the tangent of one branch. dG/dC^ is H = h (G x G / 3 - G (.) G); x is H : C."""
-    gcg = g @ c @ g
+def _add_branch(c, ci, j23, g, h, modulus, gc, x, stress, tangent):  # type: ignore[no-untyped-def]
+    """Add the stress and the tangent of one branch. dG/dC^ is H = h (G x G / 3 - G (.) G).
+
+    x becomes H : C, gc is scratch, both (3, 3).
+    """
     s = _double_contraction(c, g)
-    x = h * (s / 3.0 * g - gcg)
+    for i in range(3):
+        for j in range(3):
+            gc[i, j] = g[i, 0] * c[0, j] + g[i, 1] * c[1, j] + g[i, 2] * c[2, j]
+    for i in range(3):
+        for j in range(3):
+            x[i, j] = h * (s / 3.0 * g[i, j] - gc[i, 0] * g[0, j] - gc[i, 1] * g[1, j] - gc[i, 2] * g[2, j])
     cx = _double_contraction(c, x)
     for v in range(6):
         i, j = I_OF[v], J_OF[v]

@@ -24,14 +24,14 @@ MAX_SWEEPS = 12  # Jacobi's method converges at least quadratically: four or fiv
 
 
 @piece()
-def _principal(c, square, vector):  # type: ignore[no-untyped-def]
-    """Eigenvalues (3,) and eigenvectors (3, 3, columns) of C, by Jacobi's method; C (3, 3) is overwritten.
+def _principal(cauchy_green, c, square, vector):  # type: ignore[no-untyped-def]
+    """Eigenvalues (3,) and eigenvectors (3, 3, columns) of C, by Jacobi's method; c (3, 3) is scratch.
 
     Golub and Van Loan, Matrix Computations, 2013, sec. 8.5: backward stable also for equal eigenvalues.
     """
     for i in range(3):
         for j in range(3):
-            vector[i, j] = 1.0 if i == j else 0.0
+            c[i, j], vector[i, j] = cauchy_green[i, j], 1.0 if i == j else 0.0
     for _ in range(MAX_SWEEPS):
         diagonal = True
         for k in range(3):
@@ -100,8 +100,7 @@ def _stress_and_tangent(start, stop, cauchy_green, k, alpha, beta, isochoric, st
     )
     square, log, x, g, h, shear = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3)
     for n in range(start, stop):
-        c[:] = cauchy_green[n]
-        _principal(c, square, vector)
+        _principal(cauchy_green[n], c, square, vector)
         for a in range(3):
             log[a] = 0.5 * np.log(square[a])
             g[a] = h[a] = shear[a] = 0.0
@@ -135,14 +134,13 @@ def _stress_and_tangent(start, stop, cauchy_green, k, alpha, beta, isochoric, st
 def _principal_squares(start, stop, cauchy_green, squares):  # type: ignore[no-untyped-def]
     c, vector = np.empty((3, 3)), np.empty((3, 3))
     for n in range(start, stop):
-        c[:] = cauchy_green[n]
-        _principal(c, squares[n], vector)
+        _principal(cauchy_green[n], c, squares[n], vector)
 
 
 def log_stretches(cauchy_green: Floats) -> Floats:
     """Logarithms (n, 3) of the principal stretches at C (n, 3, 3), in no order."""
     squares = np.empty((len(cauchy_green), 3))
-    _principal_squares(cauchy_green, squares)
+    _principal_squares(np.ascontiguousarray(cauchy_green), squares)
     logarithms: Floats = 0.5 * np.log(squares)
     return logarithms
 
@@ -152,5 +150,6 @@ def principal_stress(
 ) -> tuple[Floats, Floats]:
     """S (n, 6) and tangent (n, 6, 6) at C (n, 3, 3) for the terms k, alpha; isochoric unless beta is given."""
     stress, tangent = np.empty((len(cauchy_green), 6)), np.empty((len(cauchy_green), 6, 6))
-    _stress_and_tangent(cauchy_green, k, alpha, alpha if beta is None else beta, beta is None, stress, tangent)
+    c = np.ascontiguousarray(cauchy_green)  # of another layout the kernel would be compiled once more
+    _stress_and_tangent(c, k, alpha, alpha if beta is None else beta, beta is None, stress, tangent)
     return stress, tangent

@@ -19,6 +19,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from foundation.arrays import Floats, Ints
+from solve.compiled import copy_numbers
 from solve.readout.stages import FILTER
 
 SAME_STEP = 1e-9  # relative difference of two steps that count as one
@@ -133,7 +134,7 @@ def _recur(number: Ints, a: Floats, first: Floats, second: Floats, c: Floats, d:
                 new[i] = first[k, i] * given[n - 1] + second[k, i] * given[n]
                 for j in range(order):
                     new[i] += a[k, i, j] * state[j]
-        state[:] = new
+        copy_numbers(new, state)
         for i in range(order):
             answer[n] += c[i] * state[i]
     return answer

@@ -1,14 +1,13 @@
 """Reading the table of a reduced model: outputs as a function of depth and of the memory's amplitudes."""
 
-import numba as nb
-
 from foundation.arrays import Floats, Ints
+from solve.compiled import piece
 
 MOST_BALANCE_STEPS = 60  # of the search for a depth
 DEPTH_TOLERANCE = 1e-12  # of the full depth
 
 
-@nb.njit(cache=True, error_model="numpy")
+@piece()
 def set_features(alpha: Floats, pairs: Ints, features: Floats) -> None:
     """Write the features: 1, alpha, and products of pairs of alpha."""
     count = len(alpha)
@@ -19,7 +18,7 @@ def set_features(alpha: Floats, pairs: Ints, features: Floats) -> None:
         features[1 + count + p] = alpha[pairs[p, 0]] * alpha[pairs[p, 1]]
 
 
-@nb.njit(cache=True, error_model="numpy")
+@piece()
 def first_touch(touch: Floats, features: Floats) -> float:
     """Depth at which the dot touches, with these features (f,) of the memory."""
     depth = 0.0
@@ -28,7 +27,7 @@ def first_touch(touch: Floats, features: Floats) -> float:
     return depth
 
 
-@nb.njit(cache=True, error_model="numpy")
+@piece()
 def read_outputs(table: Floats, features: Floats, touch: float, full: float, depth: float, outputs: Floats) -> None:
     """Write all outputs (o,) at a depth; below touch those of the free segment."""
     cells = len(table) - 1
@@ -44,7 +43,7 @@ def read_outputs(table: Floats, features: Floats, touch: float, full: float, dep
             outputs[o] += here * above[f, o] + there * below[f, o]
 
 
-@nb.njit(cache=True, error_model="numpy")
+@piece()
 def force_and_slope(table: Floats, features: Floats, touch: float, full: float, depth: float) -> tuple[float, float]:
     """Contact force and its slope over depth; at touch that to the right."""
     cells = len(table) - 1
@@ -57,7 +56,7 @@ def force_and_slope(table: Floats, features: Floats, touch: float, full: float, 
     return here + (at - cell) * (there - here), (there - here) * cells / (full - touch)
 
 
-@nb.njit(cache=True, error_model="numpy")
+@piece()
 def balance(
     table: Floats, features: Floats, touch: float, full: float, spring: float, push: float, guess: float
 ) -> float:

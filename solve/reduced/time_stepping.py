@@ -13,6 +13,7 @@ import numba as nb
 import numpy as np
 
 from foundation.arrays import Floats, Ints
+from solve.compiled import copy_numbers, piece
 from solve.decay import mean_decay
 from solve.materials.prony import branch_stress
 from solve.reduced.table_reading import balance, first_touch, force_and_slope, read_outputs, set_features
@@ -25,7 +26,7 @@ SUBSTEP_PHASE = 0.25  # of the rig's fastest oscillation in one sub-step; centra
 MOST_SUBSTEPS = 1000
 
 
-@nb.njit(cache=True, error_model="numpy")
+@piece()
 def _decay(step: float, moduli: Floats, times: Floats, layer: Ints, start: Ints, fade: Floats, gain: Floats,
            instant: Floats) -> None:  # fmt: skip
     """Write exp(-a) and g (1 - exp(-a)) / a of each branch, and sum g - g (1 - exp(-a)) / a of each amplitude."""
@@ -38,7 +39,7 @@ def _decay(step: float, moduli: Floats, times: Floats, layer: Ints, start: Ints,
             instant[r] += moduli[b] - gain[b]
 
 
-@nb.njit(cache=True, error_model="numpy")
+@piece()
 def _explicit_part(
     layer: Ints, start: Ints, fade: Floats, gain: Floats, memory: Floats, old: Floats, known: Floats
 ) -> None:
@@ -49,16 +50,16 @@ def _explicit_part(
             known[r] += gain[b] * old[r] - fade[b] * memory[b, r]
 
 
-@nb.njit(cache=True, error_model="numpy")
+@piece()
 def _remember(layer: Ints, start: Ints, fade: Floats, gain: Floats, memory: Floats, old: Floats, new: Floats) -> None:
     """Take the step in the branches; old becomes new."""
     for b in range(len(layer)):
         for r in range(start[layer[b]], start[layer[b] + 1]):
             memory[b, r] = branch_stress(memory[b, r], fade[b], gain[b], new[r] - old[r])
-    old[:] = new
+    copy_numbers(new, old)
 
 
-@nb.njit(cache=True, error_model="numpy")
+@piece()
 def _settle(
     table: Floats, touch: Floats, full: float, pairs: Ints, features: Floats, alpha: Floats, instant: Floats,
     known: Floats, spring: float, push: float, guess: float, observed: int, values: Floats,
@@ -87,7 +88,7 @@ def _settle(
     return depth
 
 
-@nb.njit(cache=True, error_model="numpy")
+@piece()
 def _swing(
     motion: Floats, parts: int, step: float, inertia: float, spring: float, push: float, pushed: float, table: Floats,
     touch: Floats, full: float, features: Floats,
@@ -128,7 +129,7 @@ def follow(
     push = spring * drive if kind == BY_DEPTH else drive  # on the mass
     set_features(alpha, pairs, features)
     read_outputs(table, features, touch[0], full, touch[0], values)
-    old[:] = values[observed:]
+    copy_numbers(values[observed:], old)
     stiffness = spring + abs(force_and_slope(table, features, touch[0], full, full)[1])
     motion, last = np.zeros(3), -1.0
     for n in range(len(time)):
@@ -146,15 +147,14 @@ def follow(
             alpha[r] += here - last_alpha[r]
             last_alpha[r] = here
         if ruled or 0 < parts <= MOST_SUBSTEPS:
-            asked = drive[n] if ruled else motion[0]
-            motion[0] = _settle(table, touch, full, pairs, features, alpha, instant, known, -1.0, 0.0, asked, observed,
-                                values)  # fmt: skip
+            stiff, pushed, near = -1.0, 0.0, drive[n] if ruled else motion[0]
         else:
-            motion[0] = _settle(table, touch, full, pairs, features, alpha, instant, known, spring, push[n], motion[0],
-                                observed, values)  # fmt: skip
+            stiff, pushed, near = spring, push[n], motion[0]
+        motion[0] = _settle(table, touch, full, pairs, features, alpha, instant, known, stiff, pushed, near, observed,
+                            values)  # fmt: skip
         if motion[0] > full * (1.0 + 1e-6):
             return TOO_DEEP
         _remember(layer, start, fade, gain, memory, old, values[observed:])
         path[n] = motion[0]
-        outputs[n] = values[:observed]
+        copy_numbers(values, outputs[n])
     return WITHIN_TABLE

@@ -1,8 +1,6 @@
 """A pipeline whose stages are replaced by quick stand-ins, and a way to call the command line."""
 
 from collections.abc import Callable
-from concurrent.futures import Future
-from contextlib import nullcontext
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -13,7 +11,7 @@ from softdot import run_folder, second_process
 from softdot.case import Case
 from softdot.commands import run
 from softdot.tolerances import uncertainty
-from tests.softdot.stand_ins import cap_of_height, one_tetrahedron, result_of
+from tests.softdot.stand_ins import AtOnce, cap_of_height, one_tetrahedron, result_of
 
 MINIMAL = """
 [segment.medium1]
@@ -82,18 +80,3 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
     monkeypatch.setattr(uncertainty, "fill_cache", lambda _: None)
     monkeypatch.setattr(uncertainty, "uncertainty", called("uncertainty"))
     return fakes
-
-
-class AtOnce(nullcontext["AtOnce"]):
-    """In place of the second process: calls are done here, where the stand-ins are."""
-
-    def __init__(self) -> None:
-        self.kernels = self(lambda: None)
-
-    def __enter__(self) -> "AtOnce":
-        return self
-
-    def __call__(self, function: Callable[..., object], *arguments: object) -> Future[object]:
-        future: Future[object] = Future()
-        future.set_result(function(*arguments))
-        return future

@@ -15,17 +15,18 @@ import numpy as np
 import pytest
 
 from mesh.options import MeshOptions
-from softdot import run_config
 from softdot.case import Case
 from softdot.config.hashes import config_hash
 from softdot.config.loading import load_config
 from softdot.config.model import model_of
 from softdot.config.schema import Config
+from softdot.run_folder import run_case
 from softdot.summary import history
 from solve.mechanisms import MECHANISMS
 from solve.readout.course import course
 from solve.result import PressResult
 from tests.cases import for_each
+from tests.softdot.stand_ins import AtOnce
 
 FOLDER = Path(__file__).parents[2] / "examples"
 SHORT = FOLDER / "mechanisms"
@@ -36,14 +37,18 @@ FACTOR = 337  # the paper's ratio of simulated to measured voltage
 SOLID_MESH = {"element_size_mm": 0.4, "contact_element_size_mm": 0.15}
 
 
+def run_of(case: Case) -> dict[str, Any]:
+    """What softdot run finds, whose parts and pictures this process makes: loading their libraries takes seconds."""
+    with tempfile.TemporaryDirectory() as folder:
+        summary = run_case(case, Path(folder) / "out", ask=AtOnce())
+    assert summary["solver"]["converged"], summary["solver"]
+    return summary
+
+
 @functools.cache
 def summary_of(name: str, **changes: str) -> dict[str, Any]:
     """What a run of an example finds; changes : mesher, boundary."""
-    config = changed(load_config(FOLDER / f"{name}.toml"), **changes)
-    with tempfile.TemporaryDirectory() as folder:
-        summary = run_config(config, Path(folder) / "out")
-    assert summary["solver"]["converged"], summary["solver"]
-    return summary
+    return run_of(Case(changed(load_config(FOLDER / f"{name}.toml"), **changes)))
 
 
 def changed(config: Config, mesher: str | None = None, boundary: str | None = None) -> Config:
@@ -128,12 +133,11 @@ def test_dome_is_between_hertz_and_a_bonded_layer():
     press = config.press.model_copy(update={"indentation_mm": depth, "load_steps": 1})
     sizes = MeshOptions(element_size_mm=0.5, contact_element_size_mm=0.15)
     shallow = config.model_copy(update={"press": press, "mesh": sizes})
-    with tempfile.TemporaryDirectory() as folder:
-        summary = run_config(shallow, Path(folder) / "out")
+    force_N = Case(shallow).press().reaction_force_N[-1]
     half_space = 4.0 / 3.0 / (1.0 - nu**2) * radius**0.5 * depth**1.5
     x = (radius * depth) ** 0.5 / height
     layer = 16.0 / 9.0 * radius**0.5 * depth**1.5 * (1 + 1.133 * x + 1.283 * x**2 + 0.769 * x**3 + 0.0975 * x**4)
-    assert half_space < summary["reaction_force_N"][-1] < layer
+    assert half_space < force_N < layer
 
 
 @pytest.mark.press
@@ -206,13 +210,11 @@ def test_every_short_example_has_its_line_and_its_picture():
 
 
 @functools.cache
-def press_of(name: str, with_mechanisms: bool = True) -> PressResult:
-    """The press of a short example, with or without what it shows, on the mesh of the baseline."""
-    config = load_config(SHORT / f"{name}.toml")
-    plain = Case(config.model_copy(update={"mechanisms": ()}))
-    result = (Case(config) if with_mechanisms else plain).solve(tet_mesh=plain.mesh)
-    assert result.converged, result.failure
-    return result
+def press_of(name: str) -> PressResult:
+    """The press of a short example, as softdot run does it."""
+    case = Case.load(SHORT / f"{name}.toml")
+    run_of(case)
+    return case.press().result
 
 
 @pytest.mark.press
@@ -239,7 +241,8 @@ def test_a_cable_divides_the_voltage_of_the_open_film():
 @pytest.mark.press
 def test_lost_motion_shifts_the_press_along_its_depth():
     """0.3 mm with a gap of 0.05 mm is 0.25 mm without: the fifth of six steps."""
-    late, plain = press_of("contact-gap"), press_of("contact-gap", with_mechanisms=False)
+    late = press_of("contact-gap")
+    plain = Case(load_config(SHORT / "contact-gap.toml").model_copy(update={"mechanisms": ()})).press().result
     assert late.steps[1].reaction_force_N == pytest.approx(0.0, abs=1e-9)
     assert late.steps[-1].reaction_force_N == pytest.approx(plain.steps[5].reaction_force_N, rel=1e-6)
 
@@ -279,6 +282,5 @@ def test_a_dragged_dot_is_held_back_by_friction():
 
 @pytest.mark.press
 @pytest.mark.parametrize("name", [*MECHANISMS, *LAWS])
-def test_every_short_example_runs_to_its_end(name, tmp_path):
-    summary = run_config(load_config(SHORT / f"{name}.toml"), tmp_path / "out")
-    assert summary["solver"]["converged"], summary["solver"]["failure"]
+def test_every_short_example_runs_to_its_end(name):
+    assert press_of(name).converged

@@ -11,6 +11,7 @@ import numpy as np
 
 from diagnose.engines.coupon.relaxation import Relaxation, solve_small_system
 from foundation.arrays import Floats
+from solve.compiled import copy_numbers, piece
 from solve.materials.multiplicative import MultiplicativeMaxwell, flow_weights
 from solve.materials.prony import branch_stress
 
@@ -64,7 +65,7 @@ class FlowingBranches:
         by_four, stress_four = (
             np.ascontiguousarray(a) for a in (by_stress[:, :, NONZERO_COMPONENTS], stress_by[:, NONZERO_COMPONENTS])
         )
-        rates = strain_by[:, NONZERO_COMPONENTS, :] * np.array([2.0, 2.0, 2.0, 1.0])[:, None]
+        rates = np.ascontiguousarray(strain_by[:, NONZERO_COMPONENTS] * np.array([2.0, 2.0, 2.0, 1.0])[:, None])
         linear = stress_four, kept.fade, kept.gain * kept.moduli
         flow = _four_components(cauchy_green), rates, self.steps, self.moduli
         return np.asarray(_newton_step(residual, by_four, matrices, linear, flow))
@@ -75,24 +76,24 @@ def _four_components(tensors: Floats) -> Floats:
     return np.ascontiguousarray(tensors[:, [0, 1, 2, 0], [0, 1, 2, 1]])
 
 
-@nb.njit(inline="always")
+@piece()
 def _determinant(a):  # type: ignore[no-untyped-def]
     return (a[0] * a[1] - a[3] * a[3]) * a[2]
 
 
-@nb.njit(inline="always")
+@piece()
 def _scaled_inverse(a, factor):  # type: ignore[no-untyped-def]
     """Inverse of a tensor (4,) times a factor."""
     plane = factor / (a[0] * a[1] - a[3] * a[3])
     return a[1] * plane, a[0] * plane, factor / a[2], -a[3] * plane
 
 
-@nb.njit(inline="always")
+@piece()
 def _double_contraction(a, b):  # type: ignore[no-untyped-def]
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * a[3] * b[3]
 
 
-@nb.njit(inline="always")
+@piece()
 def _sandwich_product(g, x):  # type: ignore[no-untyped-def]
     """Product g x g of two symmetric tensors (4,)."""
     u, v = g[0] * x[0] + g[3] * x[3], g[0] * x[3] + g[3] * x[1]
@@ -100,7 +101,7 @@ def _sandwich_product(g, x):  # type: ignore[no-untyped-def]
     return u * g[0] + v * g[3], w * g[3] + z * g[1], g[2] * x[2] * g[2], u * g[3] + v * g[1]
 
 
-@nb.njit(inline="always")
+@piece()
 def _flow_step(w, flowed, before, now):  # type: ignore[no-untyped-def]
     """A (4,), det(A)^(1/3), and G (4,) after a step with weights w (3,)."""
     a = (
@@ -113,7 +114,7 @@ def _flow_step(w, flowed, before, now):  # type: ignore[no-untyped-def]
     return a, root, _scaled_inverse(a, root)
 
 
-@nb.njit(inline="always")
+@piece()
 def _weight_derivatives(a, s, w):  # type: ignore[no-untyped-def]
     """Derivatives of the weights w (3,) of a step by s."""
     b = a * s
@@ -138,10 +139,10 @@ def _add_branch_stress(strain, steps, moduli, stress):  # type: ignore[no-untype
             for k in range(4):
                 stress[t, k] += moduli[b] * j23 * (g[k] - s * ci[k])
                 flowed[b, k], inner[b, k] = a[k] / root, g[k]
-        before[:] = now
+        copy_numbers(now, before)
 
 
-@nb.njit(inline="always")
+@piece()
 def _identity_tensors(branches):  # type: ignore[no-untyped-def]
     flowed = np.zeros((branches, 4))
     flowed[:, :3] = 1.0
@@ -182,19 +183,20 @@ def _newton_step(residual, by_stress, matrices, linear, flow):  # type: ignore[n
             _add_stress_changes(c, ci, j23, g, root, moduli[b], of_c, of_a[b], of_s)
             for k in range(4):
                 flowed[b, k], inner[b, k] = a[k] / root, g[k]
-                of_a[b, :, k] /= root
+                for j in range(1 + size):
+                    of_a[b, j, k] /= root
         for i in range(size):
             right[i] = -residual[t, i] - _contract_stress(by_stress[t, i], of_s[0])
             for j in range(size):
                 matrix[i, j] = matrices[t, i, j] + _contract_stress(by_stress[t, i], of_s[1 + j])
         solve_small_system(matrix, right, step[t])
-        before[:] = now
+        copy_numbers(now, before)
         _update_linear_corrections(stress_by[t], fade[t], gain[t], step[t], of_branch, was_elastic)
         _update_flow_corrections(inner, flowed, of_a, of_now, step[t], of_flowed, of_before)
     return step
 
 
-@nb.njit(inline="always")
+@piece()
 def _set_strain_changes(c, ci, j23, rates, now, of_c, of_now):  # type: ignore[no-untyped-def]
     """Write C^ (4,) into now, and the changes of C and C^ into of_c and of_now (1 + m, 4)."""
     for k in range(4):
@@ -207,7 +209,7 @@ def _set_strain_changes(c, ci, j23, rates, now, of_c, of_now):  # type: ignore[n
             of_now[j, k] = j23 * (of_c[j, k] - volume * c[k])
 
 
-@nb.njit(inline="always")
+@piece()
 def _set_flow_changes(step, flowed, inner, before, now, of_flowed, of_before, of_now, of_a):  # type: ignore[no-untyped-def]
     """Write the changes of A of one branch into of_a (1 + m, 4); returns the weights (3,) of the step."""
     s = _double_contraction(before, inner) / 3.0
@@ -224,7 +226,7 @@ def _set_flow_changes(step, flowed, inner, before, now, of_flowed, of_before, of
     return w
 
 
-@nb.njit(inline="always")
+@piece()
 def _update_linear_corrections(stress_by, fade, gain, step, of_branch, was_elastic):  # type: ignore[no-untyped-def]
     """Update the corrections of Q_i (b, 4) and of the elastic stress (4,) by those of the unknowns (m,), in place."""
     for k in range(4):
@@ -236,7 +238,7 @@ def _update_linear_corrections(stress_by, fade, gain, step, of_branch, was_elast
             of_branch[b, k] = branch_stress(of_branch[b, k], fade[b], gain[b], change)
 
 
-@nb.njit(inline="always")
+@piece()
 def _update_flow_corrections(inner, flowed, of_a, of_now, step, of_flowed, of_before):  # type: ignore[no-untyped-def]
     """Update the corrections of C_i (b, 4), whose determinant stays 1, and of C^ (4,), in place.
 
@@ -252,7 +254,7 @@ def _update_flow_corrections(inner, flowed, of_a, of_now, step, of_flowed, of_be
             of_flowed[b, k] -= grown * flowed[b, k]
 
 
-@nb.njit(inline="always")
+@piece()
 def _add_stress_changes(c, ci, j23, g, root, modulus, of_c, of_a, of_s):  # type: ignore[no-untyped-def]
     """Add changes (1 + m, 4) of the stress of one branch to of_s, in place, by those of C and A."""
     s = _double_contraction(c, g) / 3.0
@@ -269,7 +271,7 @@ def _add_stress_changes(c, ci, j23, g, root, modulus, of_c, of_a, of_s):  # type
             of_s[j, k] += modulus * j23 * (of_g[k] - of_share * ci[k] + s * of_ci[k] - volume * deviator)
 
 
-@nb.njit(inline="always")
+@piece()
 def _total_change(changes, step, k):  # type: ignore[no-untyped-def]
     """Change of component k by what was corrected before and by the unknowns' corrections (m,) together."""
     total = changes[0, k]
@@ -278,7 +280,7 @@ def _total_change(changes, step, k):  # type: ignore[no-untyped-def]
     return total
 
 
-@nb.njit(inline="always")
+@piece()
 def _contract_stress(by_stress, stress):  # type: ignore[no-untyped-def]
     """Product of a derivative by stress and a stress, over the four components that are not 0."""
     return by_stress[0] * stress[0] + by_stress[1] * stress[1] + by_stress[2] * stress[2] + by_stress[3] * stress[3]

@@ -11,6 +11,7 @@ import numba as nb
 import numpy as np
 
 from foundation.arrays import Floats
+from solve.compiled import piece
 from solve.materials.prony import Prony, branch_stress
 
 NO_SERIES = Prony((), ())
@@ -112,7 +113,7 @@ def _newton_step(residual, by_stress, stress_by, by_unknown, moduli, fade, gain)
     return step
 
 
-@nb.njit(inline="always")
+@piece()
 def solve_small_system(matrix, right, out):  # type: ignore[no-untyped-def]
     """Solve matrix (m, m) x = right (m,) for one or two unknowns, into out (m,)."""
     if len(right) == 1:
