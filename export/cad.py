@@ -7,12 +7,11 @@ from copy import copy
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from foundation.files import whole_folder
 from geometry.array.layout import ArrayLayout
 from geometry.array.parts import electrode_face
 from geometry.solids import Part
+from geometry.triangulation import triangulated
 
 RELATIVE_DEFLECTION = 5e-4
 """Largest distance of a facet from the true surface, against the longest side of the part."""
@@ -58,8 +57,7 @@ def write_stl(
 
     solid = _clear_facets(part.solid)
     deflection = RELATIVE_DEFLECTION * _longest_side(part) if deflection_mm is None else deflection_mm
-    points, triangles = solid.tessellate(deflection, angular_deflection)
-    surface = trimesh.Trimesh(np.array([tuple(p) for p in points]), np.array(triangles), process=True)
+    surface = trimesh.Trimesh(*triangulated(solid, deflection, angular_deflection), process=True)
     surface.update_faces(surface.nondegenerate_faces(height=1e-9))
     if not surface.is_volume:
         raise RuntimeError(f"the surface of part '{part.label}' is not closed")

@@ -10,6 +10,7 @@ from export.viewer_data import base64_array, colour_maps, rgb
 from foundation.arrays import Floats, Ints
 from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS
+from geometry.triangulation import triangulated
 
 TESSELLATION_CHORD_MM, TESSELLATION_ANGLE_RAD = 0.02, 0.3
 PLANE_INSET_SHARE = 1e-3
@@ -22,7 +23,9 @@ def parts_view(solids: Mapping[str, Any], dot_shape: DotShape) -> dict[str, Any]
     solids : build123d solids of the layers and the case by their labels. The cut runs through the middle of the dot,
     or beside it where it lies outside.
     """
-    surfaces = {label: _triangulated_surface(solid) for label, solid in solids.items()}
+    surfaces = {
+        label: triangulated(solid, TESSELLATION_CHORD_MM, TESSELLATION_ANGLE_RAD) for label, solid in solids.items()
+    }
     low, high = _lowest_and_highest(surfaces.values())
     plane = float(
         np.clip(dot_shape.origin_mm[1] + PLANE_INSET_SHARE * (high - low)[1], *(0.99 * np.array([low[1], high[1]])))
@@ -64,12 +67,6 @@ def _lowest_and_highest(surfaces: Iterable[tuple[Floats, Ints]]) -> tuple[Floats
     """Lowest and highest corner (3,) of all surfaces."""
     points = np.concatenate([found for found, _ in surfaces])
     return points.min(axis=0), points.max(axis=0)
-
-
-def _triangulated_surface(solid: Any) -> tuple[Floats, Ints]:
-    """Points (v, 3) in mm and triangles (t, 3) of a build123d solid."""
-    points, triangles = solid.tessellate(TESSELLATION_CHORD_MM, TESSELLATION_ANGLE_RAD)
-    return np.array([tuple(point) for point in points]), np.array(triangles, dtype=np.int64)
 
 
 def _half_behind_plane(points: Floats, triangles: Ints, plane: float) -> Floats:

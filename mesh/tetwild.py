@@ -10,6 +10,7 @@ from foundation.arrays import Floats, Ints
 from geometry.dot import DotShape
 from geometry.parameters import Segment
 from geometry.stack import layers
+from geometry.triangulation import triangulated
 from mesh.film_layers import mesh_with_film
 from mesh.options import MeshOptions
 from mesh.outline import StackOutline, curved_surface, stack_outline
@@ -84,8 +85,7 @@ def _solid_surfaces(segment: Segment, stack: StackOutline, deflection_mm: float)
     whole = _dome_slab(stack) if stack.is_slice else list(layer_solids(segment, film_thickness_mm=0.0).values())
     for solid in whole:
         cut = _cut_at_planes(solid, stack) if stack.planes else solid
-        points, triangles = cut.tessellate(deflection_mm, FACET_TURN_RAD)
-        yield np.array([tuple(p) for p in points]), np.array(triangles, dtype=np.int64)
+        yield triangulated(cut, deflection_mm, FACET_TURN_RAD)
 
 
 def _cut_at_planes(solid: Any, stack: StackOutline) -> Any:

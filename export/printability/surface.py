@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from geometry.triangulation import triangulated
+
 DEFLECTION_MM = 0.005
 """Largest distance of a facet from the true surface: a tenth of the thinnest layer."""
 ANGULAR_DEFLECTION = 0.15
@@ -22,8 +24,7 @@ def surface_of(body: Any) -> Any:
         merged = body.copy()
         merged.merge_vertices()
         return merged
-    points, triangles = body.tessellate(DEFLECTION_MM, ANGULAR_DEFLECTION)
-    surface = trimesh.Trimesh(np.array([tuple(p) for p in points]), np.array(triangles), process=True)
+    surface = trimesh.Trimesh(*triangulated(body, DEFLECTION_MM, ANGULAR_DEFLECTION), process=True)
     surface.update_faces(surface.nondegenerate_faces(height=1e-9))
     return surface
 
@@ -139,7 +140,9 @@ def _cross_widths(surface: Any, rays: Rays, middle: Floats, along: Floats, reach
     for angle in np.arange(CROSS_DIRECTIONS) * np.pi / CROSS_DIRECTIONS:
         across = np.cos(angle) * first + np.sin(angle) * second
         ahead, one = rays.first_hits(middle, across, reach_mm)
-        behind, other = rays.first_hits(middle, -across, reach_mm)
+        met = np.flatnonzero(one >= 0)
+        behind, other = np.full(len(middle), np.inf), np.full(len(middle), -1)
+        behind[met], other[met] = rays.first_hits(middle[met], -across[met], reach_mm)
         width = np.where(_are_opposite(surface, one, other), ahead + behind, np.inf)
         best[width < smallest] = across[width < smallest]
         smallest = np.minimum(smallest, width)

@@ -1,4 +1,4 @@
-"""Work that is cancelled, killed or left behind; and presses and kits of full size."""
+"""Work that is cancelled, killed or left behind; a press of full size, a kit and a diagnosis."""
 
 import json
 import os
@@ -16,6 +16,7 @@ from foundation.thread_pools import ONE_THREAD_VARIABLES
 from softdot.commands.studio import start_text
 from tests.cases import for_each
 from tests.diagnose.rigs import COUPON, HEAD, write_rig
+from tests.softdot.test_kit import COARSE
 from tests.studio.conftest import QUICK
 from tests.studio.test_page import SLIDERS, listen, slide, until
 
@@ -129,7 +130,8 @@ def test_the_default_design_gives_the_numbers_of_softdot_run(start_studio, open_
 
 
 def test_the_kit_of_an_own_design_is_downloaded(start_studio, open_tab, tmp_path):
-    running = start_studio(start_text(None))
+    """Of a coarse mesh, on which its budget is quick."""
+    running = start_studio(COARSE)
     tab = open_tab(running.address)
     tab.page.get_by_role("button", name="Kit to make it").click()
     link = tab.page.get_by_role("link", name="Download kit.zip")

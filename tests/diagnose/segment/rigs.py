@@ -1,7 +1,12 @@
 """A coarse plane-strain rig and recordings of it, made up, for the tests of its engine."""
 
-import numpy as np
+from collections.abc import Iterator
+from contextlib import contextmanager
 
+import numpy as np
+import pytest
+
+from diagnose.engines.segment import prepared
 from diagnose.engines.segment.engine import segment_engine
 from diagnose.signals.recording import Recording, Run
 from mesh.options import MeshOptions
@@ -47,6 +52,14 @@ def run(drive="displacement_mm", values=None, label="one", **changes) -> Run:
 
 def silent(*_):
     """No progress."""
+
+
+@contextmanager
+def without_memory() -> Iterator[None]:
+    """Rigs of which no layer may relax: their baseline takes one press, not the 23 of what four layers remember."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(prepared, "relaxable", lambda _: ())
+        yield
 
 
 def engine(*runs, **tables):

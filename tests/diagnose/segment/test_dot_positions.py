@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diagnose.forward import Setting
-from tests.diagnose.segment.rigs import TABLES, candidate, engine, press, run
+from tests.diagnose.segment.rigs import TABLES, candidate, engine, press, run, without_memory
 
 HALVES = [{"name": name, "center_mm": [x, 0.0], "size_mm": [1.2, 2.5]} for name, x in (("left", -0.6), ("right", 0.6))]
 SEGMENT = {**TABLES["segment"], "film": {"thickness_um": 28.0, "electrodes": HALVES}}
@@ -25,7 +25,8 @@ def over(place_mm):
 
 @pytest.fixture(scope="module")
 def rig():
-    return engine(over(0.5), over(-0.5), segment=SEGMENT)
+    with without_memory():
+        return engine(over(0.5), over(-0.5), segment=SEGMENT)
 
 
 @pytest.mark.press

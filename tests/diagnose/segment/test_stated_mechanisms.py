@@ -45,6 +45,13 @@ def improved(folder, of, setting):
     return engine_for(rig(folder, tables), rigs.silent)
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _elastic():
+    """Nothing here is about what layers remember."""
+    with rigs.without_memory():
+        yield
+
+
 @pytest.fixture(scope="module")
 def believed(tmp_path_factory):
     """The engine of the rig without any of it."""

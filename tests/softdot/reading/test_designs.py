@@ -339,7 +339,7 @@ def test_designs_are_pressed_read_and_kept(tmp_path):
     cut = text.index("[[search.compared]]\nname = \"paper's final design, rim")
     path, out = tmp_path / "designs.toml", tmp_path / "out"
     path.write_text(text[:cut], "utf-8")
-    command = ["read", "soft dots, read by touch", "--design", str(path), "--workers", "1", "-q", "-o", str(out)]
+    command = ["read", "dots", "--design", str(path), "--workers", "1", "-q", "-o", str(out)]
     assert main(command) == 0
     told = json.loads((out / "design.json").read_text("utf-8"))
     assert [one["name"] for one in told["designs"]] == ["paper's final design, free", "design 1"]
