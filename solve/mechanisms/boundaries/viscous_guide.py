@@ -32,7 +32,7 @@ VISCOUS_GUIDE = register(
         parameters=ViscousFriction,
         switch_on=switch_on,
         off={"viscous_N_s_per_mm": 0.0, "stribeck_N": 0.0},
-        example={"viscous_N_s_per_mm": 0.2, "stribeck_N": 0.1, "stribeck_mm_per_s": 0.5},
+        example={"viscous_N_s_per_mm": 1.0, "stribeck_N": 0.5, "stribeck_mm_per_s": 0.5},
         typical={
             "viscous_N_s_per_mm": "a linear drive: 0.01 to 1; 0.2 of one with a carriage of 95 kg",
             "stribeck_N": "0 to 0.5 of the friction that is there at any speed (rule of thumb)",
