@@ -1,7 +1,4 @@
-"""Hysteresis without rate of the film, or of whatever makes the charge of an unknown sensor.
-
-Plays at fixed widths, so that the answer is linear in their shares.
-"""
+"""Hysteresis without rate of the film, or of whatever makes an unknown sensor's charge: plays of fixed widths."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
