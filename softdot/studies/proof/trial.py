@@ -26,7 +26,7 @@ Commit = Callable[[str, str], None]
 
 @dataclass(frozen=True)
 class Terms:
-    """cache : of the diagnosis, for its meshes and presses. limit_s : for one diagnosis."""
+    """Terms of a trial. cache : of the diagnosis, for its meshes and presses. limit_s : for one diagnosis."""
 
     cache: Path
     limit_s: float = 3600.0

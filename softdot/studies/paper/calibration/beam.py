@@ -23,7 +23,7 @@ def tip_stiffness_N_per_mm(length_mm: float) -> float:
 
 
 def dot_depth_mm(read_mm: float, force_at: Callable[[float], float], length_mm: float, push_offset_mm: float) -> float:
-    """How deep the dot stands when the gauge reads read_mm; force_at : depth in mm -> force in N."""
+    """Depth of the dot in mm when the gauge reads read_mm; force_at : depth in mm -> force in N."""
 
     def missing(depth: float) -> float:
         return _deflection_mm(read_mm, force_at(depth), length_mm, push_offset_mm) - depth

@@ -28,7 +28,7 @@ class Rest:
     depth_mm: float
 
     def p(self, resistance_MOhm: float, press_time_s: float) -> float:
-        """p with the assumed inputs but these two."""
+        """Calibration factor p with the assumed inputs but these two."""
         charge = charge_pC(self.curve, self.depth_mm, press_time_s)
         values = assumed_inputs(resistance_MOhm=resistance_MOhm)
         return self.ideal_V / swing_V(charge, self.curve.capacitance_pF, chain(values))

@@ -25,11 +25,11 @@ class Ranges:
     """Case -> one factor a sample."""
 
     def p(self, case: str) -> Floats:
-        """p of every sample (n,)."""
+        """Calibration factor p of every sample (n,)."""
         return np.array([factor.p for factor in self.factors[case]])
 
     def ratio(self) -> Floats:
-        """p of case II over that of case I, both with the same inputs, (n,)."""
+        """Ratio (n,) of p of case II to that of case I, both with the same inputs."""
         return self.p("II") / self.p("I")
 
     def pieces(self, case: str) -> dict[str, Floats]:

@@ -11,7 +11,9 @@ from foundation.arrays import Floats
 
 @dataclass(frozen=True)
 class RigResponse:
-    """values (k,) of an input, ascending; ratios (k, 2) of force and voltage at full depth against the assumed one."""
+    """Response of a press to one input. values (k,) of an input, ascending; ratios (k, 2) of force and voltage at full
+    depth against the assumed one.
+    """
 
     values: Floats
     ratios: Floats

@@ -48,12 +48,12 @@ class SolvedPress:
 
     @property
     def force_N(self) -> float:
-        """At full depth."""
+        """Force at full depth."""
         return self.force_history_N[-1]
 
     @property
     def voltage_V(self) -> float:
-        """Open circuit, at full depth."""
+        """Open-circuit voltage at full depth."""
         return self.voltage_history_V[-1]
 
     @property
@@ -68,7 +68,7 @@ class SolvedPress:
 
     @property
     def exponent(self) -> float:
-        """n of V ~ u^n through the middle and the end of the press; 1 for a linear sensor."""
+        """Exponent n of V ~ u^n through the middle and the end of the press; 1 for a linear sensor."""
         middle = len(self.depth_mm) // 2
         voltage_ratio = abs(self.voltage_history_V[-1] / self.voltage_history_V[middle])
         return float(np.log(voltage_ratio) / np.log(self.depth_mm[-1] / self.depth_mm[middle]))
@@ -101,7 +101,7 @@ def solve_study(progress: Progress, executor: Executor) -> Study:
 
 
 def _configs() -> dict[tuple[str, str], Config]:
-    """(group, case) -> configuration; the long ones first, so that no core waits at the end."""
+    """Configurations by (group, case), the long ones first, so that no core waits at the end."""
     fine = CASES[CHECKED]
     configs = {("finer solid", CHECKED): _config(fine, "solid", mesh=FINER_SOLID_MESH, load_steps=SOLID_STEPS)}
     configs |= {

@@ -14,7 +14,7 @@ SAMPLES_FACTOR = 8
 
 @dataclass(frozen=True)
 class Filter:
-    """cutoff_Hz at -3 dB; kind : "bessel", or "butterworth" as the rig states its own."""
+    """Low-pass of an amplifier. cutoff_Hz at -3 dB; kind : "bessel", or "butterworth" as the rig states its own."""
 
     cutoff_Hz: float
     order: int

@@ -9,7 +9,8 @@ from softdot.studies.proof.world.runs import Run
 
 @dataclass(frozen=True)
 class Bench:
-    """nuisance : name -> one sigma, as in rig.toml. noise : one sigma as a share of the largest signal of a channel.
+    """Rig, specimen and runs. nuisance : name -> one sigma, as in rig.toml. noise : one sigma as a share of the largest
+    signal of a channel.
 
     mesh_mm : sizes of elements and of those at the dot that the experimenter chose; None for none.
     peak_V, peak_N : about the largest signals, to scale noise and effects. force : whether a load cell is there.

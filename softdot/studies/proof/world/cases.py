@@ -34,7 +34,8 @@ AGAIN, FLAWS = 1, 2  # tell the draws of one more press, and of a rig's flaws, f
 
 @dataclass(frozen=True)
 class Case:
-    """size : whitened root mean square per sample that is aimed at, of each effect. without : left out of the tool.
+    """Plan of one concealed recording. size : whitened root mean square per sample that is aimed at, of each effect.
+    without : left out of the tool.
 
     details : whether the rig has flaws that no mechanism describes.
     """

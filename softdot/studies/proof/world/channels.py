@@ -19,8 +19,8 @@ PASSES_HZ = 40.0
 
 @dataclass(frozen=True)
 class Stray:
-    """Between the inputs of two channels, numbered from 0. passes_Hz : beyond which its resistance keeps it from
-    acting.
+    """Stray capacitance between the inputs of two channels, numbered from 0. passes_Hz : beyond which its resistance
+    keeps it from acting.
     """
 
     between: tuple[int, int]
@@ -35,8 +35,8 @@ class Stray:
 
 @dataclass(frozen=True)
 class Wiring:
-    """strays : capacitances between inputs. leak_MOhm : channel -> resistance beside its own. slow : channel -> a
-    filter behind its own.
+    """Faults of single channels. strays : capacitances between inputs. leak_MOhm : channel -> resistance beside its
+    own. slow : channel -> a filter behind its own.
     """
 
     strays: tuple[Stray, ...] = ()

@@ -57,7 +57,7 @@ class Touch:
 
     @property
     def pressure(self) -> Floats:
-        """(k, q) MPa."""
+        """Contact pressure (k, q) in MPa."""
         return np.asarray(-WALL * np.minimum(self.gap, 0.0))
 
 

@@ -22,7 +22,9 @@ TONES = 5
 
 @dataclass(frozen=True)
 class Details:
-    """sizes : (5,) of jitter, softness, play, drift and hum, each a share of the largest. seed : of phases."""
+    """Flaws of a rig. sizes : (5,) of jitter, softness, play, drift and hum, each a share of the largest. seed : of
+    phases.
+    """
 
     sizes: tuple[float, ...]
     seed: int

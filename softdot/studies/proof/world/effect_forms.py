@@ -22,7 +22,8 @@ RELAXES_S = 0.4
 
 @dataclass(frozen=True)
 class Effect:
-    """mechanism, component : as the vocabulary names them; mechanism "" for what it does not know.
+    """An effect that can be hidden. mechanism, component : as the vocabulary names them; mechanism "" for what it does
+    not know.
 
     change : (reality, bench, strength) -> reality. truth : (bench, strength) -> true values by name in the verdict.
     form : how the law differs from that of the diagnosis, "" where nature leaves no choice. channels : how many

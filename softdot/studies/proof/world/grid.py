@@ -29,7 +29,7 @@ depth and by 3 % at a tenth of it; evenly spaced ones have 5 and 40 % more.
 
 @dataclass(frozen=True)
 class Grid:
-    """mesh : of skfem, last coordinate up, top at 0. part : (m,) number of the layer of each element.
+    """Mesh of a stack. mesh : of skfem, last coordinate up, top at 0. part : (m,) number of the layer of each element.
 
     whole : both halves along x; a quarter of a cap, or half of a ridge in the middle, otherwise.
     """

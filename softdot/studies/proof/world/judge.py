@@ -17,7 +17,7 @@ from softdot.studies.proof.world.rigs import BENCHES
 
 
 def whiten(signals: Sequence[Signals], bench: Bench) -> Floats:
-    """All answers of all runs, one after the other, in units of the innovations of their noise."""
+    """Answers of all runs, one after the other, in units of the innovations of their noise."""
     sigma = noise_of(bench)
     parts = [noise_law(name).whiten(run[name]) / sigma[name] for run in signals for name in channels(bench)]
     return np.concatenate(parts)

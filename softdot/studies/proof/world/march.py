@@ -28,7 +28,7 @@ LONGEST, GROWTH, SHORTEST_S = 0.5, 1.5, 0.006
 
 @dataclass(frozen=True)
 class Course:
-    """force_N (t,), charge_pC (t, e) of each electrode, area_mm2 (t,)."""
+    """Signals along a path. force_N (t,), charge_pC (t, e) of each electrode, area_mm2 (t,)."""
 
     force_N: Floats
     charge_pC: Floats

@@ -34,7 +34,8 @@ def relaxation(spectrum: Spectrum, time_s: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class Memory:
-    """stress : (n, 3, 3) elastic second Piola-Kirchhoff stress of the last step; parts : (b, n, 3, 3) of the branches.
+    """Memory of a layer. stress : (n, 3, 3) elastic second Piola-Kirchhoff stress of the last step; parts :
+    (b, n, 3, 3) of the branches.
 
     energy : (n,) largest so far.
     """

@@ -21,7 +21,7 @@ WARM_UP = 500
 
 @dataclass(frozen=True)
 class Autoregression:
-    """y_t = sum a_i y_(t-i) + e_t with unit variance of y; sigma : of e."""
+    """Noise of a channel: y_t = sum a_i y_(t-i) + e_t with unit variance of y; sigma : of e."""
 
     coefficients: tuple[float, ...]
     sigma: float

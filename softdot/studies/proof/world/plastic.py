@@ -24,14 +24,14 @@ from softdot.studies.proof.world.made import Film
 
 @dataclass(frozen=True)
 class Flow:
-    """strain : (n, 3, 3) plastic Green's strain. total : (n,) equivalent plastic strain so far."""
+    """Plastic flow so far. strain : (n, 3, 3) plastic Green's strain. total : (n,) equivalent plastic strain so far."""
 
     strain: Floats
     total: Floats
 
     @classmethod
     def none(cls, points: int) -> "Flow":
-        """Nothing has flown."""
+        """Flow of points that have not flown yet."""
         return cls(np.zeros((points, 3, 3)), np.zeros(points))
 
 

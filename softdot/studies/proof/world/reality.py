@@ -88,7 +88,8 @@ DEEPER = 1.05
 
 @dataclass(frozen=True)
 class Mechanics:
-    """known : table of what is really there without its memory; nominal : of the same without the specimen's scatter.
+    """Tables of a specimen. known : table of what is really there without its memory; nominal : of the same without the
+    specimen's scatter.
 
     made : without scatter, with its memory.
     """

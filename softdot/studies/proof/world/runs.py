@@ -15,7 +15,8 @@ ROUNDED = 2.0  # samples: one sigma
 
 @dataclass(frozen=True)
 class Run:
-    """count presses to depth_mm: rise_s up, hold_s, rise_s down, pause_s clear of the segment; lead_s of rest first.
+    """One run: count presses to depth_mm: rise_s up, hold_s, rise_s down, pause_s clear of the segment; lead_s of rest
+    first.
 
     resistance_MOhm : input of the amplifier, None for that of the rig. added_pF : across the input. place_mm : of the
     dot along x, from where it stands by the rig. load_cell : whether one is there where the bench has none.

@@ -71,7 +71,9 @@ class Stack:
 
     @cached_property
     def squeeze(self) -> Floats:
-        """(n, d) du / d(depth) where the depth hardly changes: the stack follows the dot, and what touches stays."""
+        """Derivative du / d(depth) (n, d) where the depth hardly changes: the stack follows the dot, and what touches
+        stays.
+        """
         follows = np.zeros(self.places.size)
         follows[self.free] = 1.0
         along = follows.reshape(self.places.shape)[:, -1] * (-1.0 - self.places[:, -1] / self.made.height_mm)
