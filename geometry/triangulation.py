@@ -15,7 +15,7 @@ def triangulated(shape: Any, deflection_mm: float, angular_deflection: float) ->
     as fine keeps them.
     """
     shape.mesh(deflection_mm, angular_deflection)
-    points, triangles, count = [], [], 0
+    points, triangles, count = list[Floats](), list[Ints](), 0
     for face in shape.faces():
         found, corners = _of_face(face.wrapped)
         points.append(found)
