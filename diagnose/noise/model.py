@@ -128,6 +128,10 @@ class Whitening:
         white = white + self._directions @ (self._shrink[:, None] * (self._directions.T @ white))
         return white.reshape(-1, *values.shape[1:])
 
+    def density_in_piece(self, number: int, frequency_Hz: Floats, step_s: float) -> Floats:
+        """One-sided power spectral density (k,) at which an even piece, by its number, is whitened, without lines."""
+        return self._laws[number][0].spectral_density(frequency_Hz, step_s)
+
     def _innovations(self, columns: Floats) -> tuple[Floats, Floats]:
         """Prediction errors over their standard deviations (m, k), and the deviations (m,), without the lines."""
         filled = np.where(self.observed[:, None], columns, 0.0)

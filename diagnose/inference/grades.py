@@ -1,0 +1,216 @@
+"""What may be said of a mismatch: an ordered list of rules, each of which looks at the evidence and speaks or passes.
+
+The first rule that speaks decides. All thresholds are in the table THRESHOLDS, with what they mean.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from diagnose.figures import figure, p_equals, part_percent, percent
+from diagnose.inference.hypotheses import VISIBLE_ERROR
+from diagnose.statistics.error_rates import RATES
+
+
+@dataclass(frozen=True)
+class Thresholds:
+    """level : chance per recording of a mismatch where there is none. unsure : probability of nothing, or of a rival,
+    from which on it is not excluded. sure : probability from which on something is certain. most, nearly_all : shares
+    of the held-out excess that a main part, and an identified explanation, account for. confirmed : the same share when
+    all is fitted anew to half of the presses. visible : error over the signal that flaws of an ordinary rig make.
+    largest_group : number of explanations that may stay together for a name to be given.
+    """
+
+    level: float = RATES.level
+    unsure: float = 0.05
+    sure: float = 0.95
+    most: float = 0.9
+    nearly_all: float = 0.95
+    confirmed: float = 0.8
+    visible: float = VISIBLE_ERROR
+    largest_group: int = RATES.largest_group
+
+
+THRESHOLDS = Thresholds()
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Evidence on a recording. p_mismatch : family-wise p-value of the residual of the baseline. best : its name, ""
+    where no mechanism shows. nothing, something_else : their probabilities. share : of the held-out excess over noise
+    that the best accounts for, as far as noise lets it be known; error, error_before : root mean square of what it and
+    the baseline leave of what was held out, relative to the signal, in the worst channel. share_of_else : as share, of
+    something else. group : number of explanations that cannot be told apart. shared, shared_probability : mechanism
+    that most explanations hold, and its probability. kind : what all of the group have in common, "" for nothing.
+    confirmed : share of the excess that a fit to half of the presses takes away from the others, None where none could
+    be held out. ordinary : whether every rig has as much of it. implausible : values at the end of what parts can have.
+    """
+
+    p_mismatch: float
+    best: str = ""
+    nothing: float = 1.0
+    something_else: float = 0.0
+    share: float = 0.0
+    share_of_else: float = 0.0
+    error: float = 0.0
+    error_before: float = 0.0
+    group: int = 0
+    kind: str = ""
+    confirmed: float | None = None
+    ordinary: bool = False
+    implausible: tuple[str, ...] = ()
+
+    @property
+    def beaten(self) -> bool:
+        """Whether something without mechanics predicts better for sure, and in practice."""
+        better = 1.0 - self.share_of_else < 0.5 * (1.0 - self.share)
+        return self.something_else > THRESHOLDS.sure and better and self.error > THRESHOLDS.visible
+
+    @property
+    def holds(self) -> bool:
+        """Whether a fit to half of the presses shows the same on the others."""
+        return self.confirmed is None or self.confirmed > THRESHOLDS.confirmed
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """The recording is what the simulation says."""
+
+    reasons: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Identified:
+    """The best explanation, or one of a few, accounts for the mismatch."""
+
+    reasons: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class MainPart:
+    """The best explanation, or one of a few, accounts for most of the mismatch."""
+
+    reasons: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class KindOnly:
+    """Only what several explanations have in common is certain."""
+
+    reasons: tuple[str, ...]
+    kind: str
+
+
+@dataclass(frozen=True)
+class Unexplained:
+    """There is a mismatch, and nothing that is known explains it."""
+
+    reasons: tuple[str, ...]
+
+
+Verdict = Agreement | Identified | MainPart | KindOnly | Unexplained
+
+
+def agreement(e: Evidence) -> Verdict | None:
+    """No mismatch beyond noise and the errors of the model."""
+    if e.p_mismatch <= THRESHOLDS.level:
+        return None
+    return Agreement(
+        (f"The residual is no larger than noise and the errors of the model make it ({p_equals(e.p_mismatch)}).",)
+    )
+
+
+def no_explanation(e: Evidence) -> Verdict | None:
+    """No mechanism shows at all."""
+    return None if e.best else Unexplained(("The residual resembles none of the candidates more than chance allows.",))
+
+
+def nothing_predicts(e: Evidence) -> Verdict | None:
+    """The simulation alone predicts as well as the best explanation, as far as these recordings tell."""
+    if e.nothing <= THRESHOLDS.unsure:
+        return None
+    return Unexplained((f"{e.best} may predict what was held out no better than your simulation does.",))
+
+
+def every_rig_has_it(e: Evidence) -> Verdict | None:
+    """So little of it is no finding."""
+    if not e.ordinary:
+        return None
+    return Unexplained((f"{e.best} is no more than what every rig has a little of, and so it is no finding.",))
+
+
+def identified(e: Evidence) -> Verdict | None:
+    """Few explanations are left, which account for all but flaws of a rig, and nothing flexible does better."""
+    small = e.error <= THRESHOLDS.visible and e.share >= THRESHOLDS.confirmed
+    whole = small or e.share >= THRESHOLDS.nearly_all
+    few = e.group <= THRESHOLDS.largest_group
+    return Identified(_praise(e)) if whole and few and e.holds and not e.beaten and not e.implausible else None
+
+
+def main_part(e: Evidence) -> Verdict | None:
+    """Few explanations are left, which account for most."""
+    few = e.group <= THRESHOLDS.largest_group
+    return MainPart((*_praise(e), *_against(e))) if e.share >= THRESHOLDS.most and few and e.holds else None
+
+
+def kind_only(e: Evidence) -> Verdict | None:
+    """What accounts for most is not one thing, but of one kind."""
+    most = e.share >= THRESHOLDS.most and e.holds
+    return KindOnly((*_praise(e), *_against(e)), e.kind) if most and e.kind else None
+
+
+def unexplained(e: Evidence) -> Verdict | None:
+    """Nothing accounts for most of it."""
+    return Unexplained((*_praise(e), *_against(e)))
+
+
+RULES: tuple[Callable[[Evidence], Verdict | None], ...] = (
+    agreement,
+    no_explanation,
+    nothing_predicts,
+    every_rig_has_it,
+    identified,
+    main_part,
+    kind_only,
+    unexplained,
+)
+
+
+def judged(evidence: Evidence) -> Verdict:
+    """The verdict of the first rule that speaks."""
+    return next(verdict for rule in RULES if (verdict := rule(evidence)) is not None)
+
+
+def _praise(e: Evidence) -> tuple[str, ...]:
+    return (
+        f"The best explanation is {e.best}. It accounts for {part_percent(max(min(e.share, 1.0), 0.0))} of the excess "
+        f"over noise in conditions that were left out, where the error falls from {percent(e.error_before)} to "
+        f"{percent(e.error)} of the signal above the noise.",
+    )
+
+
+def _against(e: Evidence) -> tuple[str, ...]:
+    """Sentences on why it is not all, or not one."""
+    found = []
+    if e.share < THRESHOLDS.nearly_all and e.error > THRESHOLDS.visible:
+        found.append("It leaves more than the flaws of an ordinary rig.")
+    if e.confirmed is not None and not e.holds:
+        found.append(
+            f"Fitted to half of the presses, it takes {part_percent(max(e.confirmed, 0.0))} of the excess away from "
+            "the others."
+        )
+    if e.beaten:
+        found.append(
+            f"A flexible memory without mechanics predicts what was held out better (probability "
+            f"{figure(e.something_else)})."
+        )
+    if e.implausible:
+        found.append(
+            f"It needs a value at the limit of what a real part can have, which is implausible: "
+            f"{', '.join(e.implausible)}."
+        )
+    if e.group > THRESHOLDS.largest_group:
+        found.append(
+            f"{e.group} explanations cannot be told apart; at most {THRESHOLDS.largest_group} may remain for a name to "
+            "be given."
+        )
+    return tuple(found)

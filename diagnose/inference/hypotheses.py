@@ -1,0 +1,255 @@
+"""Hypotheses on what was left out, compared on one footing: nothing, mechanisms alone and together, something else.
+
+Mechanisms are fitted with a small discrepancy among the noise. Pairs and triples are grown stepwise, where one alone
+leaves more than an ordinary rig does. Something else is the baseline with a flexible memory of the drive, both viscous
+and rate-independent, without mechanics.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from diagnose.fit.baseline import cap_nuisances, hold_strained_nuisances
+from diagnose.fit.linearised_system import LinearisedSystem
+from diagnose.fit.descent import coordinates
+from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.refit import Fitted
+from diagnose.fit.rig_discrepancy import RigDiscrepancy, played
+from diagnose.fit.samples import SampleBlock, Samples
+from diagnose.forward import Candidate
+from diagnose.inference.held_out_scores import HeldOutScorer, LinearHypothesis, Scored
+from diagnose.inference.screening import Screening
+from diagnose.inference.search import first_fits, paired, pairs, singles
+from diagnose.noise.repeats import repeat_groups
+from diagnose.statistics.impulse_response import doubling_edges, lagged_means
+from diagnose.statistics.model_criteria import held_out_probabilities
+from foundation.arrays import Floats, Ints
+from foundation.progress import Report
+
+VISIBLE_ERROR = 0.01
+"""Root mean square error over the signal, above noise, up to which flaws of an ordinary rig may explain it."""
+MOST_MECHANISMS = 3
+MOST_FIRSTS = 3  # hypotheses beside which another mechanism is sought
+WORTH_NATS, WORTH_SHARE = 3.0, 0.5
+"""What another mechanism must gain, over all conditions, to be a hypothesis beside those that it is added to, and the
+most of their squares that it may leave."""
+PLAY_SHARES = (0.05, 0.15, 0.4)  # of the range of a drive: thresholds of the play operators of something else
+FLAT = 1e4  # sigma of the noise over all samples: a prior for what has none
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """fit : None for nothing and for something else. left : (n,) squares above noise of what it leaves of conditions
+    that were left out, relative to the signal of each channel.
+    """
+
+    fit: Fitted | None
+    scored: Scored
+    left: Floats
+
+    @property
+    def candidates(self) -> tuple[Candidate, ...]:
+        """Mechanisms in it."""
+        return () if self.fit is None else self.fit.candidates
+
+    @property
+    def score(self) -> float:
+        """Logarithm of the predictive density of all conditions, nats."""
+        return float(self.scored.log_scores.sum())
+
+
+@dataclass(frozen=True)
+class Compared:
+    """All hypotheses. explained : those with mechanisms, best first. probabilities : (m,) of these, of nothing and of
+    something else last. judge : in whose metric.
+    """
+
+    judge: "Judge"
+    explained: tuple[Hypothesis, ...]
+    nothing: Hypothesis
+    something_else: Hypothesis
+    probabilities: Floats
+
+    @property
+    def best(self) -> Hypothesis | None:
+        """The first of those with mechanisms."""
+        return self.explained[0] if self.explained else None
+
+
+class Judge:
+    """Scores hypotheses of one recording, all with the same discrepancy and on the same conditions."""
+
+    def __init__(self, model: ObservedModel, found: Screening, discrepancy: RigDiscrepancy) -> None:
+        self.model, self.found, self.discrepancy = model, found, discrepancy
+        self.scorer = HeldOutScorer(model, discrepancy, condition_labels(model.samples))
+
+    @cached_property
+    def nothing(self) -> Hypothesis:
+        """The baseline, with strained nuisances held at what the experimenter declared."""
+        return self._hypothesis(None, hold_strained_nuisances(self.found.start, self.found.baseline))
+
+    @cached_property
+    def something_else(self) -> Hypothesis:
+        """The baseline with a flexible memory."""
+        system = hold_strained_nuisances(self.found.start, self.found.baseline)
+        return self._hypothesis(None, system, flexible_memory(self.model.samples))
+
+    def scored(self, fit: Fitted) -> Hypothesis:
+        """The hypothesis of a fit."""
+        return self._hypothesis(fit, cap_nuisances(fit.system))
+
+    def _hypothesis(self, fit: Fitted | None, system: LinearisedSystem, memory: Floats | None = None) -> Hypothesis:
+        linear = self._linear(fit, system, memory)
+        scored = self.scorer.scored(linear)
+        return Hypothesis(fit, scored, self.discrepancy.relative_squares(scored.missed))
+
+    def _linear(self, fit: Fitted | None, system: LinearisedSystem, memory: Floats | None) -> LinearHypothesis:
+        """Without the errors of the engine among the columns, which the discrepancy has."""
+        count, total = len(system.values), len(system.sigma)
+        kept = np.r_[0:count, total - system.laws : total]
+        columns = np.zeros((len(self.model.samples), len(kept)))
+        columns[system.informative] = system.nuisance_design[:, kept]
+        sigma, residual = system.sigma[kept], system.residual
+        if fit is not None:
+            width = np.array([one.high - one.low for one in coordinates(fit.candidates)])
+            columns, sigma = np.hstack([columns, fit.slopes]), np.concatenate([sigma, width])
+            residual = residual + fit.slopes @ fit.values
+        flexible = np.zeros(len(sigma))
+        if memory is not None:
+            columns = np.hstack([columns, memory])
+            sigma = np.concatenate([sigma, np.ones(memory.shape[1])])
+            flexible = np.concatenate([flexible, np.ones(memory.shape[1])])
+        length = np.linalg.norm(columns[system.informative], axis=0)
+        sigma = np.minimum(sigma, FLAT / np.maximum(length, 1.0))
+        exact = replace(system, numerical=system.numerical - self.model.tolerance)
+        return LinearHypothesis(exact, residual, columns, sigma, flexible)
+
+    def share(self, one: Hypothesis) -> float:
+        """Share of the excess of nothing that a hypothesis accounts for in conditions that were left out."""
+        before, after = (max(float(each.left.sum()), 0.0) for each in (self.nothing, one))
+        return 1.0 - after / before if before > 0.0 else 0.0
+
+    def known_share(self, one: Hypothesis) -> float:
+        """The same share, were two sigma of the noise in what it leaves no more than noise."""
+        before, after = float(self.nothing.left.sum()), float(one.left.sum())
+        noise = 2.0 * float(self.discrepancy.noise_errors(np.zeros(len(one.left), dtype=np.int64))[0])
+        return 1.0 - max(after - noise, 0.0) / before if before > 0.0 else 0.0
+
+    def error(self, one: Hypothesis) -> float:
+        """Root mean square error of a hypothesis in conditions left out, above noise, of the worst channel."""
+        squares = np.bincount(self.discrepancy.channel, one.left)
+        return float(np.sqrt(max(float(squares.max()), 0.0)))
+
+
+def compared(judge: Judge, rng: np.random.Generator, report: Report) -> Compared:
+    """All hypotheses of a recording, the best first."""
+    fits = singles(judge.model, judge.found, first_fits(judge.model, judge.found, report), report)
+    found = []
+    for count, fit in enumerate(fits):
+        report("held-out conditions", count, len(fits))
+        found.append(judge.scored(fit))
+    grown = _best_first(found)
+    while grown and len(grown[0].candidates) < MOST_MECHANISMS and _leaves_too_much(judge, grown[0]):
+        more = _with_one_more(judge, grown, report)
+        if not more:
+            break
+        found += more
+        grown = _best_first([*more, *grown])
+    ordered = _best_first(found)
+    scores = [one.scored.log_scores for one in (*ordered, judge.nothing, judge.something_else)]
+    return Compared(
+        judge, tuple(ordered), judge.nothing, judge.something_else, held_out_probabilities(np.array(scores), rng)
+    )
+
+
+def _leaves_too_much(judge: Judge, one: Hypothesis) -> bool:
+    return judge.error(one) > VISIBLE_ERROR
+
+
+def _with_one_more(judge: Judge, found: Sequence[Hypothesis], report: Report) -> list[Hypothesis]:
+    """Hypotheses with one mechanism more than the best, that predict better than it; then what acts in place of one."""
+    size, best = len(found[0].candidates), found[0]
+    firsts = [one for one in found if len(one.candidates) == size][:MOST_FIRSTS]
+    seen = {frozenset(c.name for c in one.candidates) for one in found}
+    more: list[Hypothesis] = []
+    for first in firsts:
+        assert first.fit is not None
+        for fit in pairs(judge.model, judge.found, first.fit, [], report):
+            if (names := frozenset(c.name for c in fit.candidates)) not in seen:
+                seen.add(names)
+                more.append(judge.scored(fit))
+    more = _worth_it(judge, more, best)
+    if more and size == 1:
+        more += _worth_it(judge, _in_its_place(judge, found, more[0], seen, report), best)
+    return _best_first(more)
+
+
+def _worth_it(judge: Judge, more: Sequence[Hypothesis], best: Hypothesis) -> list[Hypothesis]:
+    """Those that predict better than what they are added to for sure, and in practice."""
+    most = np.sqrt(WORTH_SHARE) * judge.error(best)
+    return _best_first([one for one in more if one.score > best.score + WORTH_NATS and judge.error(one) <= most])
+
+
+def _in_its_place(
+    judge: Judge, found: Sequence[Hypothesis], pair: Hypothesis, seen: set[frozenset[tuple[str, str]]], report: Report
+) -> list[Hypothesis]:
+    """The second of a pair beside every other mechanism alone: what imitates the first may not do so here."""
+    assert pair.fit is not None
+    first, second = pair.candidates
+    start, others = pair.fit.values[len(first.coordinates) :], []
+    for one in found:
+        if one.fit is not None and len(one.candidates) == 1:
+            names = frozenset((one.candidates[0].name, second.name))
+            if len(names) == 2 and names not in seen:
+                others += paired(judge.model, judge.found, one.fit, second, [start], report)
+    return [judge.scored(fit) for fit in others]
+
+
+def _best_first(found: Sequence[Hypothesis]) -> list[Hypothesis]:
+    return sorted(found, key=lambda one: -one.score)
+
+
+def condition_labels(samples: Samples) -> Ints:
+    """Labels (n,) of what is held out together: runs that repeat each other; where all do, presses or phases."""
+    home = {number: number for number in range(len(samples.recording.runs))}
+    for group in repeat_groups(samples.recording.runs, samples.recording.phases):
+        home |= dict.fromkeys(group, group[0])
+    labels = np.array([home[number] for number in range(len(home))])[samples.run]
+    return np.asarray(labels if len(np.unique(labels)) > 1 else samples.fold, dtype=np.int64)
+
+
+def flexible_memory(samples: Samples) -> Floats:
+    """Columns (n, k), of the size of the signals: for each channel an impulse response to the drive and to its square,
+    and play operators of the drive, common to all runs.
+    """
+    step = max(run.step_s for run in samples.recording.runs)
+    presses = [press.end - press.touch for found in samples.recording.phases for press in found.presses]
+    edges_s = np.asarray(doubling_edges(max(presses, default=len(samples))) * step, dtype=np.float64)
+    by_channel = []
+    for channel in samples.channels:
+        own = [block for block in samples.blocks if block.channel == channel]
+        columns = np.sum([_past_of(samples, block, edges_s) for block in own], axis=0)
+        signal = np.sum([_signal_of(samples, block) for block in own], axis=0)
+        length = np.linalg.norm(columns, axis=0)
+        scale = np.divide(np.linalg.norm(signal), length, out=np.zeros(len(length)), where=length > 0.0)
+        by_channel.append(columns * scale)
+    return np.column_stack(by_channel)
+
+
+def _past_of(samples: Samples, block: SampleBlock, edges_s: Floats) -> Floats:
+    run = samples.recording.runs[block.run]
+    depth = run.drive_values
+    if run.drive == "displacement_mm" and samples.recording.specimen is None:
+        depth = np.maximum(depth, 0.0)
+    edges = np.maximum.accumulate(np.maximum(np.round(edges_s / run.step_s), np.arange(len(edges_s)))).astype(np.int64)
+    reach = float(np.ptp(depth))
+    plays = [played(depth, share * reach) - depth[0] for share in PLAY_SHARES]
+    past = np.column_stack([*(lagged_means(values, edges) for values in (depth, depth**2)), *plays])
+    return samples.block_vector(block, block.whitening(past))
+
+
+def _signal_of(samples: Samples, block: SampleBlock) -> Floats:
+    values = samples.recording.runs[block.run].channels[block.channel]
+    return samples.block_vector(block, block.whitening(np.where(np.isfinite(values), values, 0.0)))
