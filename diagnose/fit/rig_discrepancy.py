@@ -25,6 +25,8 @@ from diagnose.fit.samples import SampleBlock, Samples
 from diagnose.forward import Signals
 from foundation.arrays import Floats, Ints
 
+VISIBLE_ERROR = 0.01
+"""Root mean square error over the signal, above noise, up to which flaws of an ordinary rig may explain it."""
 PLAY_THRESHOLDS = (0.1, 0.3)  # of the largest signal of a channel
 PARTS = {"rate": 0.5, "play": 0.5, "drift": 0.3}
 """Size of a part over that of the shapes, root mean squares over the signal."""

@@ -16,7 +16,8 @@ from diagnose.forward import Setting, Signals
 from diagnose.figures import figure
 from diagnose.inference.equal_explanations import explanations_as_good
 from diagnose.inference.grades import Agreement, Evidence, Identified, KindOnly, MainPart, Unexplained, judged
-from diagnose.inference.hypotheses import VISIBLE_ERROR, Compared, Hypothesis
+from diagnose.fit.rig_discrepancy import VISIBLE_ERROR
+from diagnose.inference.hypotheses import Compared, Hypothesis
 from diagnose.inference.localisation import explanations, places, shares
 from diagnose.inference.reasons import named, warnings_of
 from diagnose.inference.residual_test import Checked

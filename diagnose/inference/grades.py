@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from diagnose.figures import figure, p_equals, part_percent, percent
-from diagnose.inference.hypotheses import VISIBLE_ERROR
+from diagnose.fit.rig_discrepancy import VISIBLE_ERROR
 from diagnose.statistics.error_rates import RATES
 
 

@@ -16,7 +16,7 @@ from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.descent import coordinates
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted
-from diagnose.fit.rig_discrepancy import RigDiscrepancy, played
+from diagnose.fit.rig_discrepancy import VISIBLE_ERROR, RigDiscrepancy, played
 from diagnose.fit.samples import SampleBlock, Samples
 from diagnose.forward import Candidate
 from diagnose.inference.held_out_scores import HeldOutScorer, LinearHypothesis, Scored
@@ -28,8 +28,6 @@ from diagnose.statistics.model_criteria import held_out_probabilities
 from foundation.arrays import Floats, Ints
 from foundation.progress import Report
 
-VISIBLE_ERROR = 0.01
-"""Root mean square error over the signal, above noise, up to which flaws of an ordinary rig may explain it."""
 MOST_MECHANISMS = 3
 MOST_FIRSTS = 3  # hypotheses beside which another mechanism is sought
 WORTH_NATS, WORTH_SHARE = 3.0, 0.5

@@ -7,7 +7,7 @@ from typing import Any
 
 from diagnose.figures import figure, p_equals, part_percent, percent
 from diagnose.findings import Findings, Fit, FittedModel
-from diagnose.fit.signal_discrepancy import VISIBLE_ERROR
+from diagnose.fit.rig_discrepancy import VISIBLE_ERROR
 from diagnose.next_press.choose import NextPress, surviving_models
 from diagnose.signals.recording import Recording
 from diagnose.verdict.content import next_experiment, reason_without_press
