@@ -26,7 +26,7 @@ class ObservedModel:
     """An engine with the instruments of a recording. nuisances : in order. sigma : (p,) deviations of their priors.
 
     engine : by which trials are evaluated; ValueError as the engine is NoAnswerError throughout. tolerance : (n,)
-    variance of the discrepancy that it may leave, see signal_discrepancy.py.
+    variance of the discrepancy that it may leave, see rig_discrepancy.py.
     """
 
     def __init__(self, samples: Samples, engine: Engine) -> None:
@@ -42,11 +42,6 @@ class ObservedModel:
         other.tolerance = variance
         return other
 
-    def with_samples(self, samples: Samples) -> "ObservedModel":
-        """This model of the same recording, whose samples are weighed by another noise."""
-        other = copy(self)
-        other.samples, other.tolerance = samples, np.zeros(len(samples))
-        return other
 
     def signals(self, values: Floats, settings: Sequence[Setting] = ()) -> list[dict[str, Floats]]:
         """Signals that the instruments of every run show, for nuisances (p,) and mechanisms.

@@ -26,11 +26,6 @@ POOLS: tuple[frozenset[str], ...] = tuple(
 )  # fmt: skip
 
 
-NEGLIGIBLE_SHARED_NOISE = 1e-3  # of the noise: what channels share is no more than that
-SharedNoise = Sequence[Signals]
-"""Columns (t, k) by channel for each run, whose combinations with standard normal weights channels share as noise."""
-
-
 @dataclass(frozen=True)
 class SampleBlock:
     """Samples of one channel of one run. rows : their part of the vector."""
@@ -50,13 +45,11 @@ class Samples:
     """All samples of a recording as one vector of n coefficients.
 
     blocks : in order. bank : the transform. channels : names by number. press : (n,) number of the press. presses :
-    (run, press within it) of each number. run, phase : (n,) of each coefficient. shared : noise that channels share.
+    (run, press within it) of each number. run, phase : (n,) of each coefficient.
     """
 
-    def __init__(
-        self, recording: Recording, noise: Mapping[tuple[str, str], NoiseModel], shared: SharedNoise = ()
-    ) -> None:
-        self.recording, self.noise, self.shared = recording, noise, shared
+    def __init__(self, recording: Recording, noise: Mapping[tuple[str, str], NoiseModel]) -> None:
+        self.recording, self.noise = recording, noise
         self.channels = tuple(dict.fromkeys(name for run in recording.runs for name in run.answers))
         self.blocks = tuple(_sample_blocks(recording, noise))
         labels, steps = _sample_labels(recording, self.blocks, self.channels)
@@ -67,8 +60,6 @@ class Samples:
         self.press: Ints = np.asarray(number.ravel(), dtype=np.int64)
         self.run, self.phase = labels["run"], labels["phase"]
         self.kind = np.array([self.channels.index(block.channel) for block in self.blocks])
-        self._whiteners: tuple[_Whitener, ...] = ()  # of what is shared, which is made without them
-        self._whiteners = tuple(_shared_noise_whitener(self, run, own) for run, own in enumerate(shared) if own)
 
     def __len__(self) -> int:
         return len(self.press)
@@ -80,21 +71,13 @@ class Samples:
     def coefficients(self, signals: Sequence[Signals]) -> Floats:
         """Vector (n,), or (n, k), of the signals of all runs: channel -> (t,) or (t, k)."""
         white = np.concatenate([b.whitening(signals[b.run][b.channel]) for b in self.blocks])
-        return self._decorrelate(self.bank.coefficients(white))
+        return self.bank.coefficients(white)
 
     def block_vector(self, block: SampleBlock, white: Floats) -> Floats:
         """Vector (n, ...) of whitened samples (m, ...) of one block, zero elsewhere."""
         out = np.zeros((len(self), *white.shape[1:]))
         out[block.rows] = self._block_transforms[block.rows.start](white)
-        return self._decorrelate(out)
-
-    def _decorrelate(self, values: Floats) -> Floats:
-        """Coefficients (n, ...) with the noise that channels share made independent, in place."""
-        for one in self._whiteners:
-            own = values[one.rows]
-            if own.any():
-                values[one.rows] = own - (one.directions * one.less) @ (one.directions.T @ own)
-        return values
+        return out
 
     def pieces_of(self, block: SampleBlock) -> tuple[TimeSegment, ...]:
         """Time segments of one block."""
@@ -167,25 +150,6 @@ class Samples:
             np.array([number[key] for key in keys]),
             np.array(list(used.values())),
         )
-
-
-@dataclass(frozen=True)
-class _Whitener:
-    """The map (1 + C C')^-1/2 = 1 - U diag(less) U' for columns C = U S V' in some rows."""
-
-    rows: Ints
-    directions: Floats
-    less: Floats
-
-
-def _shared_noise_whitener(samples: Samples, run: int, shared: Signals) -> _Whitener:
-    """Map that makes the noise that channels of a run share independent."""
-    own = [block for block in samples.blocks if block.run == run and block.channel in shared]
-    columns = np.vstack([samples.block_vector(b, b.whitening(shared[b.channel]))[b.rows] for b in own])
-    directions, sizes, _ = np.linalg.svd(columns, full_matrices=False)
-    kept = sizes > NEGLIGIBLE_SHARED_NOISE
-    rows = np.concatenate([np.arange(block.rows.start, block.rows.stop) for block in own])
-    return _Whitener(rows, directions[:, kept], 1.0 - 1.0 / np.sqrt(1.0 + sizes[kept] ** 2))
 
 
 def noise_degrees(model: NoiseModel) -> float:

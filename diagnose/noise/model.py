@@ -47,12 +47,6 @@ class NoiseModel:
         """This noise without the mains lines, for the question whether hum is what the model lacks."""
         return replace(self, lines=())
 
-    def white_equivalent(self) -> "NoiseModel":
-        """White noise of the same power; whitened samples are then samples in units of its standard deviation."""
-        return replace(
-            self, autoregression=Autoregression(np.zeros(0), float(self.autoregression.autocovariance(1)[0]))
-        )
-
     def whitening(self, observed: Bools, time_s: Floats | None = None) -> "Whitening":
         """Map that whitens samples at times (n,), of which only the observed ones, (n,) flags, are there.
 

@@ -9,26 +9,19 @@ from diagnose.statistics.proportions import rate_for_promise
 class Rates:
     """Error rates and limits that decide on a name.
 
-    level : chance per case of each kind of false alarm (proportions.rate_for_promise gives it from a promise). margin :
-    nats per press by which the black box must win. largest_group : number of models that may stay indistinguishable.
+    level : chance per case of each kind of false alarm (proportions.rate_for_promise gives it from a promise).
+    largest_group : number of models that may stay indistinguishable.
     """
 
     level: float
-    margin: float
     largest_group: int
 
 
-RATES = Rates(rate_for_promise(4, 400), margin=0.0, largest_group=3)
-"""At most 4 false names in 400 cases without effect, with 99 % confidence; margin: see black_box.py."""
-LARGEST_SHARE_LEFT = 0.05
-"""Share of the excess, or of the strain of what floats, that a named model may leave although chance does not."""
+RATES = Rates(rate_for_promise(4, 400), largest_group=3)
+"""At most 4 false names in 400 cases without effect, with 99 % confidence."""
 LARGEST_FORM_SHARE = 0.1
 """Share of the excess that the model-form error may account for; an effect that nuisances cancel has none."""
-AMBIGUITY_ERROR = 0.05
-"""Chance of choosing the wrong one of two models above which they are called ambiguous."""
 MOST_FINALISTS = 6
 """Number of single mechanisms that are fitted with all that floats, after a first fit of all survivors."""
-MOST_FIRSTS_OF_PAIRS = 3
-"""Number of single mechanisms beside which a second one is sought."""
 MOST_PAIRS_PER_FIRST = 4
-"""Number of pairs that are fitted for each of these."""
+"""Number of pairs that are fitted for each of those beside which a second mechanism is sought."""

@@ -1,17 +1,9 @@
-"""Criteria for the choice of a model: Schwarz's, and probabilities from held-out scores."""
+"""Probabilities of models from held-out scores."""
 
 import numpy as np
 from scipy.special import softmax
 
 from foundation.arrays import Floats
-
-
-def bic(log_likelihood: float, parameters: int, samples: int) -> float:
-    """Schwarz's criterion q ln n - 2 ln L (Ann. Stat. 6 (1978) 461).
-
-    parameters : their number q. samples : number n of whitened samples, which are independent.
-    """
-    return parameters * float(np.log(samples)) - 2.0 * log_likelihood
 
 
 def held_out_probabilities(scores: Floats, rng: np.random.Generator, draws: int = 1000) -> Floats:

@@ -16,8 +16,7 @@ from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import common_metric, fit_mechanisms, largest_form_error
 from diagnose.fit.samples import Samples
 from diagnose.forward import Candidate, Coordinate
-from diagnose.inference.choice import Judge, partners
-from diagnose.inference.excess import excess, share_left
+from diagnose.inference.excess import excess
 from diagnose.inference.screening import screen
 from diagnose.inference.search import paired
 from diagnose.inference.true_refit import relaxed
@@ -101,13 +100,6 @@ def test_a_fit_stops_at_its_bound():
     problem = descent(model, common_metric(model.samples, baseline), (narrow,), ())
     place, _ = descended(problem, np.array([0.1]))
     assert place.values[0] == 0.4
-
-
-def test_the_right_mechanism_leaves_little_and_the_wrong_one_most():
-    model, baseline, right = leaking()
-    wrong = fit_mechanisms(model, baseline, (CAPACITANCE,), np.array([0.3]), excess(baseline))
-    assert share_left(right, excess(baseline)) < 0.05
-    assert share_left(wrong, excess(baseline)) > 0.5
 
 
 def test_an_effect_that_nuisances_cancel_excuses_nothing():
@@ -206,16 +198,3 @@ def test_intervals_cover_the_truth_though_the_surface_gives_way_at_the_first_tou
         )
         covered += found["compliance"].low <= 0.08 <= found["compliance"].high
     assert covered >= 17  # 18 expected; 14 without the allowance
-
-
-@pytest.mark.press
-def test_what_else_shows_beside_the_first_of_a_pair_is_tried_too():
-    model = seen(small(12, Sensor(leak=1.0, branches2=(0.1, 0.1, 0.0)), runs=4))
-    screening = screen(model, fit_baseline(model), silent)
-    judge = Judge(model, screening, np.random.default_rng(0))
-    leak = fit_mechanisms(model, screening.start, (LEAK,), np.array([1.0]), 0.0)
-    imitated = paired(model, screening, leak, CANDIDATES[3], [np.full(3, 0.1)], silent)
-    models = [judge.judged(fit) for fit in (leak, *imitated)]
-    tried = [one.fit.candidates[1].name for one in partners(judge, models, models[1], silent)]
-    assert ("viscoelasticity", "medium2") in tried
-    assert ("viscoelasticity", "medium1") not in tried
