@@ -69,7 +69,8 @@ class FittedModel:
     """One to three mechanisms fitted to all runs, with how it predicts presses that it was not fitted to.
 
     gain, gain_lower : nats per press over the baseline, and the lower bound of its mean. probability : among all
-    models, the baseline and "none of these". p_left : family-wise p-value of what it leaves. intervals : those of the
+    models, the baseline and something else. error_left : root mean square error above noise, relative to the signal,
+    in conditions that were left out, of the worst channel. intervals : those of the
     parameters, where they are still to be found, which takes as long as many fits; None where nobody asks for them.
     shared : nuisance that all runs share -> its coordinate beside these mechanisms.
     """
@@ -79,7 +80,7 @@ class FittedModel:
     gain: float
     gain_lower: float
     probability: float
-    p_left: float
+    error_left: float
     intervals: Callable[[], tuple[Mapping[str, Interval], ...]] | None = field(default=None, repr=False, compare=False)
     shared: Mapping[str, float] = field(default_factory=dict)
 
@@ -145,7 +146,7 @@ class Remainder:
 
 @dataclass(frozen=True)
 class Findings:
-    """mismatch, unexplained as statistics.abstain decides, with its reasons as sentences.
+    """mismatch, unexplained as inference.grades decides, with its reasons as sentences.
 
     engine, engine_accuracy : name and accuracy of the model, see diagnose.forward.Engine.
     models : all that were fitted, best first; best : the first of them where it is named, else None.

@@ -6,18 +6,16 @@ from functools import partial
 import numpy as np
 
 from diagnose.findings import Detection, Findings, Fit, FittedModel, Remainder
-from diagnose.fit.descent import coordinates
 from diagnose.fit.intervals import point_intervals, profile_intervals
 from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.nuisances import Nuisance
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted
+from diagnose.fit.rig_discrepancy import VISIBLE_ERROR
 from diagnose.forward import Setting, Signals
-from diagnose.figures import figure
 from diagnose.inference.equal_explanations import explanations_as_good
 from diagnose.inference.grades import Agreement, Evidence, Identified, KindOnly, MainPart, Unexplained, judged
-from diagnose.fit.rig_discrepancy import VISIBLE_ERROR
-from diagnose.inference.hypotheses import Compared, Hypothesis
+from diagnose.inference.hypotheses import Compared, Hypothesis, implausible
 from diagnose.inference.localisation import explanations, places, shares
 from diagnose.inference.reasons import named, warnings_of
 from diagnose.inference.residual_test import Checked
@@ -29,9 +27,7 @@ from foundation.arrays import Floats
 from foundation.progress import Report
 
 
-def agreeing_findings(
-    model: ObservedModel, baseline: LinearisedSystem, found: Checked, verdict: Agreement
-) -> Findings:
+def agreeing_findings(model: ObservedModel, baseline: LinearisedSystem, found: Checked, verdict: Agreement) -> Findings:
     """Findings without a mismatch: a good result."""
     return Findings(
         engine=model.engine.name,
@@ -111,7 +107,8 @@ def evidence_of(found: Compared, detected: Checked, group: Sequence[int], held_o
     if best is None or best.fit is None:
         return Evidence(detected.p_value)
     fits = [one.fit for n in group if (one := found.explained[n]).fit is not None]
-    confirmed = None if held_out is None else _confirmed(held_out)
+    free = any(one.traits.free_phase for one in best.candidates)  # the phase in a press follows from no other
+    confirmed = None if held_out is None or free else _confirmed(held_out)
     return Evidence(
         p_mismatch=detected.p_value,
         best=named(best.fit),
@@ -132,17 +129,6 @@ def evidence_of(found: Compared, detected: Checked, group: Sequence[int], held_o
 def _confirmed(held_out: Fit) -> float:
     """Share that a refit takes away; all of it where what it leaves is less than an ordinary rig does."""
     return 1.0 if held_out.improves and held_out.excess_after <= VISIBLE_ERROR**2 else held_out.share
-
-
-def implausible(fit: Fitted) -> tuple[str, ...]:
-    """Coordinates at an end of what a real part can have; 0 is always plausible."""
-    found = []
-    for coordinate, value in zip(coordinates(fit.candidates), fit.values, strict=True):
-        close = 1e-6 * (coordinate.high - coordinate.low)
-        for end, plausible in zip((coordinate.low, coordinate.high), coordinate.levels_off, strict=True):
-            if end != 0.0 and abs(value - end) <= close and not plausible:
-                found.append(f"{coordinate.name.replace('_', ' ')} = {figure(value)}")
-    return tuple(found)
 
 
 def _per_fold(one: Hypothesis, other: Hypothesis) -> float:
@@ -171,7 +157,7 @@ def _fitted_model(found: Compared, one: Hypothesis, probability: float, detailed
         gain=float(gains.mean()),
         gain_lower=float(gains.mean() - 1.645 * spread),
         probability=probability,
-        p_left=1.0,
+        error_left=found.judge.error(one),
         intervals=partial(profile_intervals, model, fit) if detailed else None,
         shared={nuisance.name: float(value) for nuisance, value in each if nuisance.run is None},
     )
@@ -217,4 +203,3 @@ def information(fits: Sequence[Fitted | None]) -> Floats:
         total[first:last, first:last] = fit.system.quadratic.inner_products(columns, columns)
         first = last
     return total
-

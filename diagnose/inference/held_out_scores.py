@@ -22,7 +22,7 @@ from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.rig_discrepancy import RigDiscrepancy
 from diagnose.statistics.linear_gaussian import Sums
-from foundation.arrays import Floats, Ints
+from foundation.arrays import Bools, Floats, Ints
 
 SIZES = 1e-3 * 2.0 ** np.arange(11.0)
 """Sizes of a discrepancy, relative to the signal: 0.1 % to 102 %."""
@@ -50,14 +50,15 @@ class LinearHypothesis:
     """residual (n,) = columns (n, k) @ parameters + discrepancy + noise; sigma : (k,) prior deviations.
 
     system : the metric and the rows that are looked at. memory : whether each column, (k,) flags, is part of a flexible
-    memory, whose size is not known either.
+    memory, whose size is not known either. own : whether it belongs to one run alone, such as a gain.
     """
 
     system: LinearisedSystem
     residual: Floats
     columns: Floats
     sigma: Floats
-    memory: Floats
+    memory: Bools
+    own: Bools
 
 
 class HeldOutScorer:
@@ -80,7 +81,7 @@ class _Scoring:
         self.scorer, self.one = scorer, one
         found, system = scorer.discrepancy, one.system
         self.rows = np.flatnonzero(system.informative)
-        self.own = one.columns.shape[1]
+        self.count = one.columns.shape[1]
         self.columns = np.hstack([one.columns[self.rows], found.columns[self.rows]])
         self.residual = one.residual[self.rows]
         self.fold, self.kind = scorer.fold[self.rows], found.kind[self.rows]
@@ -133,7 +134,7 @@ class _Scoring:
         """Prior deviations (k,) of all columns."""
         one, quantity = self.one, self.scorer.discrepancy.quantity
         size = np.array([SIZES[n] for n in state])
-        own = one.sigma * np.where(one.memory > 0.0, size[-1], 1.0)
+        own = one.sigma * np.where(one.memory, size[-1], 1.0)
         return np.concatenate([own, np.where(quantity < 0, 1.0, size[np.maximum(quantity, 0)])])
 
     def _parts(self, state: tuple[int, ...], without: int | None) -> tuple[Sums, float]:
@@ -164,8 +165,7 @@ class _Scoring:
     def _missed(self, state: tuple[int, ...]) -> Floats:
         """(n,) residual of each group as the others predict it, with what is the group's own fitted to it."""
         one, sigma = self.one, self._sigma(state)
-        missed, run = one.residual.copy(), [nuisance.run for nuisance in self.scorer.model.nuisances]
-        own = np.flatnonzero([number is not None for number in run])
+        missed, own = one.residual.copy(), np.flatnonzero(one.own)
         weight = np.empty(len(self.rows))
         for kind in range(self.kinds):
             rows = self.kind == kind
@@ -173,7 +173,7 @@ class _Scoring:
         for fold in range(self.scorer.folds):
             held = self.fold == fold
             mean = self._parts(state, fold if self.scorer.folds > 1 else None)[0].mean(sigma)
-            mean[self.own :], rows = 0.0, self.rows[held]
+            mean[self.count :], rows = 0.0, self.rows[held]
             left = one.residual[rows] - self.columns[held] @ mean
             columns = self.columns[held][:, own] * weight[held, None]
             closest = Quadratic(columns, sigma[own]).mean(left * weight[held])
@@ -184,4 +184,3 @@ class _Scoring:
 def _log_half_cauchy(size: float, usual: float) -> float:
     """Logarithm of the density of a size on a logarithmic grid, but for a constant."""
     return float(np.log(size / usual) - np.log1p((size / usual) ** 2))
-

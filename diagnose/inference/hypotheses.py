@@ -11,9 +11,10 @@ from functools import cached_property
 
 import numpy as np
 
+from diagnose.figures import figure
 from diagnose.fit.baseline import cap_nuisances, hold_strained_nuisances
-from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.descent import coordinates
+from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted
 from diagnose.fit.rig_discrepancy import VISIBLE_ERROR, RigDiscrepancy, played
@@ -110,24 +111,33 @@ class Judge:
         columns = np.zeros((len(self.model.samples), len(kept)))
         columns[system.informative] = system.nuisance_design[:, kept]
         sigma, residual = system.sigma[kept], system.residual
+        own = [one.run is not None for one in self.model.nuisances] + [False] * (len(kept) - count)
         if fit is not None:
             width = np.array([one.high - one.low for one in coordinates(fit.candidates)])
             columns, sigma = np.hstack([columns, fit.slopes]), np.concatenate([sigma, width])
             residual = residual + fit.slopes @ fit.values
-        flexible = np.zeros(len(sigma))
+            own += [one.traits.free_phase for one in fit.candidates for _ in one.coordinates]
+        flexible = np.zeros(len(sigma), dtype=bool)
         if memory is not None:
             columns = np.hstack([columns, memory])
             sigma = np.concatenate([sigma, np.ones(memory.shape[1])])
-            flexible = np.concatenate([flexible, np.ones(memory.shape[1])])
+            flexible = np.concatenate([flexible, np.ones(memory.shape[1], dtype=bool)])
+        own += [False] * (len(sigma) - len(own))
         length = np.linalg.norm(columns[system.informative], axis=0)
         sigma = np.minimum(sigma, FLAT / np.maximum(length, 1.0))
         exact = replace(system, numerical=system.numerical - self.model.tolerance)
-        return LinearHypothesis(exact, residual, columns, sigma, flexible)
+        return LinearHypothesis(exact, residual, columns, sigma, flexible, np.array(own, dtype=bool))
 
     def share(self, one: Hypothesis) -> float:
         """Share of the excess of nothing that a hypothesis accounts for in conditions that were left out."""
         before, after = (max(float(each.left.sum()), 0.0) for each in (self.nothing, one))
         return 1.0 - after / before if before > 0.0 else 0.0
+
+    def apart(self, one: Hypothesis, other: Hypothesis) -> float:
+        """Root mean square difference of two forecasts, relative to the signal, of the worst channel."""
+        found = self.discrepancy
+        squares = (one.scored.missed - other.scored.missed) ** 2 * found.plain / found.square[found.channel]
+        return float(np.sqrt(np.bincount(found.channel, squares).max()))
 
     def known_share(self, one: Hypothesis) -> float:
         """The same share, were two sigma of the noise in what it leaves no more than noise."""
@@ -155,11 +165,34 @@ def compared(judge: Judge, rng: np.random.Generator, report: Report) -> Compared
             break
         found += more
         grown = _best_first([*more, *grown])
+    ordered = _sound_first(found)
+    rivals = (*ordered, judge.nothing, judge.something_else)
+    counted = [n for n, one in enumerate(rivals) if not (_is_sound(ordered) and implausible(one.fit))]
+    probabilities = np.zeros(len(rivals))
+    probabilities[counted] = held_out_probabilities(np.array([rivals[n].scored.log_scores for n in counted]), rng)
+    return Compared(judge, tuple(ordered), judge.nothing, judge.something_else, probabilities)
+
+
+def implausible(fit: Fitted | None) -> tuple[str, ...]:
+    """Coordinates of a fit at an end of what a real part can have; 0 is always plausible."""
+    found = []
+    for coordinate, value in zip(coordinates(fit.candidates), fit.values, strict=True) if fit is not None else ():
+        close = 1e-6 * (coordinate.high - coordinate.low)
+        for end, plausible in zip((coordinate.low, coordinate.high), coordinate.levels_off, strict=True):
+            if end != 0.0 and abs(value - end) <= close and not plausible:
+                found.append(f"{coordinate.name.replace('_', ' ')} = {figure(value)}")
+    return tuple(found)
+
+
+def _is_sound(ordered: Sequence[Hypothesis]) -> bool:
+    return bool(ordered) and not implausible(ordered[0].fit)
+
+
+def _sound_first(found: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """The best first; one that needs an implausible value comes after all that are not worse for sure."""
     ordered = _best_first(found)
-    scores = [one.scored.log_scores for one in (*ordered, judge.nothing, judge.something_else)]
-    return Compared(
-        judge, tuple(ordered), judge.nothing, judge.something_else, held_out_probabilities(np.array(scores), rng)
-    )
+    sound = [one for one in ordered if not implausible(one.fit) and one.score > ordered[0].score - WORTH_NATS]
+    return [*sound, *(one for one in ordered if one not in sound)] if sound else ordered
 
 
 def _leaves_too_much(judge: Judge, one: Hypothesis) -> bool:

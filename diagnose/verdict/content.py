@@ -141,7 +141,7 @@ def _alternative_table(model: FittedModel) -> dict[str, Any]:
         "words": model_words(model),
         "probability": model.probability,
         "log_score_gain_per_press": model.gain,
-        "p_value_left": model.p_left,
+        "error_left": model.error_left,
     }
 
 

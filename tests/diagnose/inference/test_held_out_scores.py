@@ -36,7 +36,8 @@ def discrepancy():
 def hypothesis(columns, sigma):
     model, baseline = observed()
     system = replace(linearise(model, baseline.values), informative=np.arange(len(model.samples)) % 3 == 0)
-    return LinearHypothesis(system, system.residual, columns, sigma, np.zeros(len(sigma)))
+    none = np.zeros(len(sigma), dtype=bool)
+    return LinearHypothesis(system, system.residual, columns, sigma, none, none)
 
 
 def test_scores_are_those_of_the_dense_normal_density(monkeypatch):
