@@ -42,7 +42,6 @@ class ObservedModel:
         other.tolerance = variance
         return other
 
-
     def signals(self, values: Floats, settings: Sequence[Setting] = ()) -> list[dict[str, Floats]]:
         """Signals that the instruments of every run show, for nuisances (p,) and mechanisms.
 
