@@ -8,7 +8,7 @@ from diagnose.inference.hypotheses import Compared, Hypothesis, implausible
 def explanations_as_good(found: Compared) -> list[int]:
     """Numbers of the explanations that are as good as the best, which comes first.
 
-    One is not excluded where its probability against the best is more than THRESHOLDS.unsure, nor where its forecast
+    One is not excluded where its probability against the best is more than THRESHOLDS.rival, nor where its forecast
     differs by no more than those of two good codes. What holds all mechanisms of another one that is not excluded adds
     nothing to it.
     """
@@ -21,7 +21,7 @@ def _is_as_good(found: Compared, number: int) -> bool:
     if implausible(one.fit) and not implausible(best.fit):
         return False
     chance, rival = float(found.probabilities[0]), float(found.probabilities[number])
-    return rival > THRESHOLDS.unsure * (chance + rival) or found.judge.apart(best, one) < USUAL_SHAPE
+    return rival > THRESHOLDS.rival * (chance + rival) or found.judge.apart(best, one) < USUAL_SHAPE
 
 
 def _holds_another(found: Compared, number: int, good: list[int]) -> bool:

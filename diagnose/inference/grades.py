@@ -13,8 +13,8 @@ from diagnose.statistics.error_rates import RATES
 
 @dataclass(frozen=True)
 class Thresholds:
-    """level : chance per recording of a mismatch where there is none. unsure : probability of nothing, or of a rival,
-    from which on it is not excluded. sure : probability from which on something is certain. most, nearly_all : shares
+    """level : chance per recording of a mismatch where there is none. unsure : probability of nothing from which on it is
+    not excluded. rival : the same of an explanation, against the best one. sure : probability from which on something is certain. most, nearly_all : shares
     of the held-out excess that a main part, and an identified explanation, account for. confirmed : the same share when
     all is fitted anew to half of the presses. visible : error over the signal that flaws of an ordinary rig make.
     largest_group : number of explanations that may stay together for a name to be given.
@@ -22,6 +22,7 @@ class Thresholds:
 
     level: float = RATES.level
     unsure: float = 0.05
+    rival: float = 0.01
     sure: float = 0.95
     most: float = 0.9
     nearly_all: float = 0.95

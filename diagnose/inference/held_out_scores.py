@@ -165,7 +165,8 @@ class _Scoring:
     def _missed(self, state: tuple[int, ...]) -> Floats:
         """(n,) residual of each group as the others predict it, with what is the group's own fitted to it."""
         one, sigma = self.one, self._sigma(state)
-        missed, own = one.residual.copy(), np.flatnonzero(one.own)
+        whole = self._parts(state, None)[0].mean(sigma)  # for rows that fits do not look at
+        missed, own = one.residual - one.columns @ whole[: self.count], np.flatnonzero(one.own)
         weight = np.empty(len(self.rows))
         for kind in range(self.kinds):
             rows = self.kind == kind

@@ -35,7 +35,7 @@ WORTH_NATS, WORTH_SHARE = 3.0, 0.5
 """What another mechanism must gain, over all conditions, to be a hypothesis beside those that it is added to, and the
 most of their squares that it may leave."""
 PLAY_SHARES = (0.05, 0.15, 0.4)  # of the range of a drive: thresholds of the play operators of something else
-FLAT = 1e4  # sigma of the noise over all samples: a prior for what has none
+FLAT = 1e6  # sigma of the noise over all samples: a prior for what has none
 
 
 @dataclass(frozen=True)
@@ -124,7 +124,7 @@ class Judge:
             flexible = np.concatenate([flexible, np.ones(memory.shape[1], dtype=bool)])
         own += [False] * (len(sigma) - len(own))
         length = np.linalg.norm(columns[system.informative], axis=0)
-        sigma = np.minimum(sigma, FLAT / np.maximum(length, 1.0))
+        sigma = np.where(np.isinf(sigma), FLAT / np.maximum(length, 1.0), sigma)
         exact = replace(system, numerical=system.numerical - self.model.tolerance)
         return LinearHypothesis(exact, residual, columns, sigma, flexible, np.array(own, dtype=bool))
 

@@ -162,25 +162,26 @@ def test_of_four_that_act_alike_the_kind_is_told():
 
 
 @dataclass
-class Rippled(ToyEngine):
-    """A leak through the film is the same as one of the input, but for ripples."""
+class OtherCode(ToyEngine):
+    """A leak through the film is the same as one of the input, but for what two codes differ by, over depth."""
 
-    ripples: float = 0.0
+    difference: float = 0.0
 
     def predict(self, run, settings):
         found = super().predict(run, settings)
         film = any(setting.candidate.component == "film" for setting in settings)
-        wave = self.ripples * film * np.sin(60.0 * self.recording.runs[run].time_s)
-        return found | {"voltage_V": found["voltage_V"] * (1.0 + wave)}
+        bend = self.difference * film * np.cos(9.0 * np.maximum(self.recording.runs[run].drive_values, 0.0))
+        return found | {"voltage_V": found["voltage_V"] * (1.0 + bend)}
 
 
 @pytest.mark.press
-@for_each(("ripples", "alike"), [(0.003, 2), (0.03, 1)])
-def test_what_differs_by_less_than_two_codes_do_is_one_group(ripples, alike):
-    """By the noise alone both ripples tell the two leaks apart."""
+@for_each(("difference", "alike"), [(0.003, 2), (0.04, 1)])
+def test_what_differs_by_less_than_two_codes_do_is_one_group(difference, alike):
+    """By the noise alone both differences tell the two leaks apart."""
     recorded = small(5, Sensor(leak=1.0), runs=3, noise=0.0005, distort=0.001)
     through_film = one("charge-leakage", "film", "leak", 0.0, 20.0, 0.5)
-    engine = Rippled(recorded, (*FEW[:3], through_film), {"force_N": 0.001, "voltage_V": 0.001}, ripples=ripples)
+    accuracy = {"force_N": 0.001, "voltage_V": 0.001}
+    engine = OtherCode(recorded, (*FEW[:3], through_film), accuracy, difference=difference)
     findings = diagnose(recorded, engine, 1, silent)
     assert names(findings) == (LEAK,)
     assert len(findings.groups[0]) == alike
