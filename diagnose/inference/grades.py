@@ -13,15 +13,20 @@ from diagnose.statistics.error_rates import RATES
 
 @dataclass(frozen=True)
 class Thresholds:
-    """level : chance per recording of a mismatch where there is none. unsure : probability of nothing from which on it is
-    not excluded. rival : the same of an explanation, against the best one. sure : probability from which on something is certain. most, nearly_all : shares
-    of the held-out excess that a main part, and an identified explanation, account for. confirmed : the same share when
-    all is fitted anew to half of the presses. visible : error over the signal that flaws of an ordinary rig make.
+    """What decides, in one place.
+
+    level : chance per recording of a mismatch where there is none.
+    nothing : probability of nothing from which on it is not excluded.
+    rival : probability of an explanation, against the best one, from which on it is not excluded.
+    sure : probability from which on something else is certain.
+    most, nearly_all : shares of the held-out excess for a main part, and for an identified explanation.
+    confirmed : the same share where all is fitted anew to half of the presses and shown on the others.
+    visible : error over the signal that flaws of an ordinary rig make.
     largest_group : number of explanations that may stay together for a name to be given.
     """
 
     level: float = RATES.level
-    unsure: float = 0.05
+    nothing: float = 0.05
     rival: float = 0.01
     sure: float = 0.95
     most: float = 0.9
@@ -127,7 +132,7 @@ def no_explanation(e: Evidence) -> Verdict | None:
 
 def nothing_predicts(e: Evidence) -> Verdict | None:
     """The simulation alone predicts as well as the best explanation, as far as these recordings tell."""
-    if e.nothing <= THRESHOLDS.unsure:
+    if e.nothing <= THRESHOLDS.nothing:
         return None
     return Unexplained((f"{e.best} may predict what was held out no better than your simulation does.",))
 

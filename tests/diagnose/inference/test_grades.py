@@ -92,7 +92,7 @@ def test_a_name_leaves_little_and_is_one_of_few(evidence):
         assert evidence.p_mismatch <= THRESHOLDS.level
         assert evidence.share >= THRESHOLDS.confirmed
         assert evidence.group <= THRESHOLDS.largest_group
-        assert evidence.nothing <= THRESHOLDS.unsure
+        assert evidence.nothing <= THRESHOLDS.nothing
         assert not evidence.ordinary
     if isinstance(verdict, Identified):
         assert evidence.error <= THRESHOLDS.visible or evidence.share >= THRESHOLDS.nearly_all
