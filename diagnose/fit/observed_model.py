@@ -42,6 +42,14 @@ class ObservedModel:
         other.tolerance = variance
         return other
 
+    def has_answer(self, values: Floats, settings: Sequence[Setting]) -> bool:
+        """Whether the engine has an answer to every run at nuisances (p,) and mechanisms."""
+        try:
+            self.signals(values, settings)
+        except ValueError:
+            return False
+        return True
+
     def signals(self, values: Floats, settings: Sequence[Setting] = ()) -> list[dict[str, Floats]]:
         """Signals that the instruments of every run show, for nuisances (p,) and mechanisms.
 
@@ -65,11 +73,8 @@ class ObservedModel:
         """
         end = self.clip_to_bounds(end)
         for values in (end, *(start + share * (end - start) for share in STEP_SHARES)):
-            try:
-                self.signals(values, settings)
-            except ValueError:
-                continue
-            return values
+            if self.has_answer(values, settings):
+                return values
         return start
 
     def clip_to_bounds(self, values: Floats) -> Floats:

@@ -48,7 +48,7 @@ def singles(model: ObservedModel, found: Screening, firsts: Sequence[FirstFit], 
     for count, one in enumerate(firsts):
         report("fits", count, len(firsts))
         fits.append(fit_mechanisms(model, found.start, (found.candidates[one.number],), one.values, found.excess))
-    return [fit for fit in refined(model, found.start, fits, found.excess, report) if _acts(fit)]
+    return [fit for fit in refined(model, found.start, fits, found.excess, report) if _is_usable(model, fit)]
 
 
 def refined(
@@ -115,9 +115,9 @@ def paired(
     if best is None:
         return []
     fit = fit_mechanisms(model, first.system, both, best.values, found.excess)
-    return [one for one in refined(model, first.system, [fit], found.excess, report) if _acts(one)]
+    return [one for one in refined(model, first.system, [fit], found.excess, report) if _is_usable(model, one)]
 
 
-def _acts(fit: Fitted) -> bool:
-    """Whether all its mechanisms are on: with one that is off it is a model of fewer."""
-    return all(any(setting.values) for setting in fit.settings)
+def _is_usable(model: ObservedModel, fit: Fitted) -> bool:
+    """Whether all mechanisms of a fit are on, since with one that is off it is of fewer, and the model answers there."""
+    return all(any(setting.values) for setting in fit.settings) and model.has_answer(fit.system.values, fit.settings)
