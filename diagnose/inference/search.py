@@ -119,5 +119,5 @@ def paired(
 
 
 def _is_usable(model: ObservedModel, fit: Fitted) -> bool:
-    """Whether all mechanisms of a fit are on, since with one that is off it is of fewer, and the model answers there."""
+    """Whether all mechanisms of a fit are on (with one that is off it is of fewer), and the model answers there."""
     return all(any(setting.values) for setting in fit.settings) and model.has_answer(fit.system.values, fit.settings)
