@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from diagnose.findings import Fit
-from diagnose.fit.baseline import CAP_SIGMAS
+from diagnose.fit.baseline import CAP_SIGMAS, PLAUSIBLE_SIGMAS
 from diagnose.fit.linearised_system import LinearisedSystem, linearise
 from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.observed_model import ObservedModel
@@ -62,22 +62,25 @@ def unimproved(fit: Fit) -> Fit:
 
 
 def relaxed(model: ObservedModel, values: Floats, settings: Sequence[Setting], rows: Bools, frozen: Bools) -> Floats:
-    """Nuisances fitted to some rows under their priors, but for those that are frozen."""
+    """Nuisances fitted to some rows under their priors, but for those that are frozen.
+
+    Without mechanisms they stay within what is plausible: far out they stand in for what is missing.
+    """
     for _ in range(ROUNDS if len(values) else 0):
         system = linearise(model, values, settings, informative=rows)
-        values = model.answerable_nuisances(values, _bounded(system, values, frozen), settings)
+        values = model.answerable_nuisances(values, _bounded(system, values, frozen, CAP_SIGMAS if settings else PLAUSIBLE_SIGMAS), settings)
     return values
 
 
-def _bounded(system: LinearisedSystem, values: Floats, frozen: Bools) -> Floats:
-    """Least squares (p,) within CAP_SIGMAS: what would go farther is held there and the rest fitted again."""
+def _bounded(system: LinearisedSystem, values: Floats, frozen: Bools, most: float) -> Floats:
+    """Least squares (p,) within so many deviations: what would go farther is held there and the rest fitted again."""
     values, held = values.copy(), frozen.copy()
     columns, sigma = system.nuisance_design[:, : len(values)], system.sigma[: len(values)]
     while not held.all():
         free = np.flatnonzero(~held)
         residual = system.residual[system.informative] - columns[:, held] @ values[held]
         found = Quadratic(system.weighted_rows(columns[:, free]), sigma[free]).mean(system.weighted_rows(residual))
-        values[free] = np.clip(found, -CAP_SIGMAS * sigma[free], CAP_SIGMAS * sigma[free])
+        values[free] = np.clip(found, -most * sigma[free], most * sigma[free])
         held[free] = values[free] != found
         if not held[free].any():
             break

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from diagnose.fit.baseline import CAP_SIGMAS, fit_baseline, linearise_at_plausible
+from diagnose.fit.baseline import PLAUSIBLE_SIGMAS, fit_baseline, linearise_at_plausible
 from diagnose.fit.descent import descended, descent
 from diagnose.fit.discrepancy import FORM_ERROR
 from diagnose.fit.intervals import profile_intervals
@@ -71,7 +71,7 @@ def test_beside_a_nuisance_at_the_end_of_what_is_plausible_the_others_fit_as_wel
     system = linearise(model, values)
     rows = np.vstack([system.weighted_rows(system.nuisance_design[:, :2]), np.diag(1.0 / model.sigma)])
     seen_and_prior = np.concatenate([system.weighted_rows(system.residual), np.zeros(2)])
-    best = lsq_linear(rows, seen_and_prior, (-CAP_SIGMAS * model.sigma, CAP_SIGMAS * model.sigma))
+    best = lsq_linear(rows, seen_and_prior, (-PLAUSIBLE_SIGMAS * model.sigma, PLAUSIBLE_SIGMAS * model.sigma))
     assert best.active_mask.tolist() == [1, 0]
     assert values == pytest.approx(best.x, rel=1e-4)
 
