@@ -66,9 +66,10 @@ def relaxed(model: ObservedModel, values: Floats, settings: Sequence[Setting], r
 
     Without mechanisms they stay within what is plausible: far out they stand in for what is missing.
     """
+    most = CAP_SIGMAS if settings else PLAUSIBLE_SIGMAS
     for _ in range(ROUNDS if len(values) else 0):
         system = linearise(model, values, settings, informative=rows)
-        values = model.answerable_nuisances(values, _bounded(system, values, frozen, CAP_SIGMAS if settings else PLAUSIBLE_SIGMAS), settings)
+        values = model.answerable_nuisances(values, _bounded(system, values, frozen, most), settings)
     return values
 
 
