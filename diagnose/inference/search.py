@@ -82,6 +82,8 @@ def pairs(
 
     level : p-value of the score test up to which a second one shows. least : share of the squares that it explains.
     """
+    if not model.has_answer(first.system.values, first.settings):  # a coupon's answer depends on where it starts
+        return []
     names = [one.name for one in (*first.candidates, *same)]
     others = [c for c in found.candidates if c.name not in names]
     each = [sensitivity(model, first.system.values, other, first.settings) for other in others]
@@ -109,6 +111,8 @@ def paired(
     report: Report,
 ) -> list[Fitted]:
     """Both together from starts (q,) of the second; none where the model has no answer."""
+    if not model.has_answer(first.system.values, first.settings):
+        return []
     both = (*first.candidates, second)
     problem = descent(model, first.system, both, first.settings)
     best = lowest(problem, [np.concatenate([first.values, start]) for start in starts], found.rough)
