@@ -26,6 +26,9 @@ from diagnose.verdict.names import common_words
 from foundation.arrays import Floats
 from foundation.progress import Report
 
+FEWEST_PRESSES_TO_HALVE = 4
+"""With fewer presses one half of them is a single one."""
+
 
 def agreeing_findings(model: ObservedModel, baseline: LinearisedSystem, found: Checked, verdict: Agreement) -> Findings:
     """Findings without a mismatch: a good result."""
@@ -108,7 +111,7 @@ def evidence_of(found: Compared, detected: Checked, group: Sequence[int], held_o
         return Evidence(detected.p_value)
     fits = [one.fit for n in group if (one := found.explained[n]).fit is not None]
     free = any(one.traits.free_phase for one in best.candidates)  # the phase in a press follows from no other
-    confirmed = None if held_out is None or free else _confirmed(held_out)
+    confirmed = None if held_out is None or free else _confirmed(held_out, len(judge.model.samples.presses))
     return Evidence(
         p_mismatch=detected.p_value,
         best=named(best.fit),
@@ -126,8 +129,13 @@ def evidence_of(found: Compared, detected: Checked, group: Sequence[int], held_o
     )
 
 
-def _confirmed(held_out: Fit) -> float:
-    """Share that a refit takes away; all of it where what it leaves is less than an ordinary rig does."""
+def _confirmed(held_out: Fit, presses: int) -> float | None:
+    """Share that a refit takes away; all of it where what it leaves is less than an ordinary rig does.
+
+    None where half of the presses are too few to fix a law, and it predicts the others better all the same.
+    """
+    if held_out.improves and presses < FEWEST_PRESSES_TO_HALVE:
+        return None
     return 1.0 if held_out.improves and held_out.excess_after <= VISIBLE_ERROR**2 else held_out.share
 
 

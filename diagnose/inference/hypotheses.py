@@ -29,7 +29,7 @@ from diagnose.statistics.model_criteria import held_out_probabilities
 from foundation.arrays import Floats, Ints
 from foundation.progress import Report
 
-MOST_MECHANISMS = 3
+MOST_MECHANISMS, FEWEST_CONDITIONS = 3, 3
 MOST_FIRSTS = 3  # hypotheses beside which another mechanism is sought
 WORTH_NATS, WORTH_SHARE = 3.0, 0.5
 """What another mechanism must gain, over all conditions, to be a hypothesis beside those that it is added to, and the
@@ -243,12 +243,17 @@ def _best_first(found: Sequence[Hypothesis]) -> list[Hypothesis]:
 
 
 def condition_labels(samples: Samples) -> Ints:
-    """Labels (n,) of what is held out together: runs that repeat each other; where all do, presses or phases."""
+    """Labels (n,) of what is held out together: runs that repeat each other; of fewer than three such conditions their
+    presses, and of fewer than three presses their phases, since one rate or depth alone fixes no law.
+    """
     home = {number: number for number in range(len(samples.recording.runs))}
     for group in repeat_groups(samples.recording.runs, samples.recording.phases):
         home |= dict.fromkeys(group, group[0])
-    labels = np.array([home[number] for number in range(len(home))])[samples.run]
-    return np.asarray(labels if len(np.unique(labels)) > 1 else samples.fold, dtype=np.int64)
+    conditions = np.array([home[number] for number in range(len(home))])[samples.run]
+    phases = np.unique(np.column_stack([samples.press, samples.phase]), axis=0, return_inverse=True)[1].ravel()
+    choices = (conditions, samples.press, phases)
+    found = next((labels for labels in choices if len(np.unique(labels)) >= FEWEST_CONDITIONS), phases)
+    return np.asarray(found, dtype=np.int64)
 
 
 def flexible_memory(samples: Samples) -> Floats:

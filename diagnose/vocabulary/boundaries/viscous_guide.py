@@ -11,7 +11,7 @@ from diagnose.vocabulary.scene import FORCE, CouponScene, Scene
 from solve.mechanisms.boundaries.viscous_guide import VISCOUS_GUIDE
 
 MOST = 1.5  # of the largest force, at the speed of the quickest loading
-SPEEDS = log(30.0)  # either way about a tenth of that speed, where Stribeck's friction fades
+SPEEDS = log(30.0)  # either way about half of that speed, where Stribeck's friction fades
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
@@ -40,7 +40,7 @@ def _guide(force_N: float, travel_mm: float, scales: TimeScales) -> Candidate:
         return {
             "viscous_N_s_per_mm": force_N / speed * viscous,
             "stribeck_N": force_N * stribeck,
-            "stribeck_mm_per_s": 0.1 * speed * exp(log_speed),
+            "stribeck_mm_per_s": 0.5 * speed * exp(log_speed),
         }
 
     units = {"viscous_N_s_per_mm": "N s/mm", "stribeck_N": "N", "stribeck_mm_per_s": "mm/s"}

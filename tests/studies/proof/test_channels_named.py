@@ -66,6 +66,9 @@ class Known:
         found = Mechanics(drive.values, course.force_N, course.area_mm2, 1e-12 * course.charge_pC)
         return channel_signals(run, run.answers, drive, drive.values, found, self.film, model)
 
+    def imagine(self, _run, _settings):
+        raise ValueError("only the presses that were made are known")
+
 
 def told(effect, strength, folder, among=()):
     """What is named in a recording with an effect, among all that stands behind the film or some of it."""
