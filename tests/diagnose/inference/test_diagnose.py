@@ -115,18 +115,6 @@ def test_an_unknown_effect_is_left_unexplained():
     assert not found(small(7, Sensor(step_charge=0.3), runs=4)).best
 
 
-@pytest.mark.evidence
-def test_what_comes_closest_is_told_by_the_error_that_a_reader_counts(monkeypatch):
-    """Nothing is named; by the noise alone another explanation comes first, which predicts worse."""
-    recording, others = small(5, Sensor(leak=1.0), runs=4, noise=0.001), tuple(c for c in FEW if c.name != LEAK)
-    findings = found(recording, others)
-    monkeypatch.setattr("diagnose.inference.diagnose.main_part", lambda *_: None)
-    by_noise = found(recording, others)
-    assert (findings.grade, by_noise.grade) == (Grade.UNEXPLAINED, Grade.UNEXPLAINED)
-    assert findings.unnamed.nrmse_after < by_noise.unnamed.nrmse_after
-    assert "closest" in findings.reasons[-1]
-
-
 @pytest.mark.press
 @for_each("noise", [0.01, 0.001])
 def test_a_law_of_another_form_is_named_at_any_noise(noise):
