@@ -5,17 +5,21 @@ from functools import cache
 import numpy as np
 import pytest
 
+from diagnose.engines.segment.drive import model_drive
 from diagnose.engines.segment.presses import Presses
+from diagnose.engines.segment.response import FilmPlate, Mechanics, channel_signals
+from diagnose.signals.recording import Recording
 from diagnose.signals.time_scales import TimeScales
 from diagnose.vocabulary.base import candidates_of_segment
 from diagnose.vocabulary.scene import Scene
-from solve.mechanisms import with_mechanisms
+from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Readout
 from solve.tables.rig_mesh import rig_mesh
 from solve.tables.workers import run_all
-from tests.diagnose.segment.rigs import COARSE, TABLES, model, silent
+from tests.diagnose.segment.rigs import COARSE, TABLES, model, run, silent
 
 DEPTH_MM = 0.2
+COMPLIANT = {"compliance_mm_per_N": 0.05}
 SIDES, DOT = ("elastic-sides", "sides"), ("dot-offset", "dot")
 
 
@@ -32,6 +36,22 @@ def force(boundary, name=None, share=0.0):
     (found,) = run_all([presses.press_job(of if name is None else changed)], silent)
     assert len(found), f"{name} at {share} has no equilibrium"
     return float(found[-1, 0])
+
+
+def test_under_a_force_the_sensor_sees_the_rig_give_way_too():
+    """The recorded path is that of the dot and the force times the compliance; without one that of the dot."""
+    pushed = run("force_N", np.interp(run().time_s, [0.3, 0.5, 0.9, 1.1], [0.0, 2.0, 2.0, 0.0]))
+    drive = model_drive(pushed, Recording((pushed,)).phases[0])
+    path = 0.1 * np.sqrt(drive.values / 2.0)
+    found = Mechanics(path, drive.values, drive.values, drive.values[:, None])
+    plain = model()
+    soft = with_mechanisms(plain, [Mechanism(name="rig-compliance", component="rig", parameters=COMPLIANT)])
+    film = FilmPlate(np.ones((1, 2)), 0.0)
+    rigid, gives = (
+        channel_signals(pushed, ["displacement_mm"], drive, drive.values, found, film, on)["displacement_mm"]
+        for on in (plain, soft)
+    )
+    np.testing.assert_allclose((gives - rigid)[drive.touching], 0.05 * drive.values[drive.touching], atol=1e-12)
 
 
 @pytest.mark.press
