@@ -41,7 +41,12 @@ HYSTERESIS = register(
         parameters=Hysteresis,
         switch_on=switch_on,
         off={"play_shares": [], "play_pC": [], "push_shares": [], "push_play_pC": []},
-        example={"play_shares": [0.1, 0.1], "play_pC": [1000.0, 4000.0]},
+        example={
+            "play_shares": [0.1, 0.1],
+            "play_pC": [1000.0, 4000.0],
+            "push_shares": [0.05],
+            "push_play_pC": [2000.0],
+        },
         typical={
             "play_shares": "0.02 to 0.3 in all, of soft PZT under MPa; PVDF less (Damjanovic 1997; rule of thumb)",
             "push_shares": "0 where a push and a pull make the same loop, as of poled films (from symmetry)",
