@@ -1,13 +1,15 @@
 """Real presses of a P(VDF-TrFE) fingertip: what shows, and what must not once nothing is left to find."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from diagnose.engines.proportional.engine import proportional_engine
 from diagnose.inference.diagnose import diagnose
 from softdot.config.rig import load_rig
-from tests.diagnose.real import NEEDED, control, converted, silent
+from tests.cases import for_each
+from tests.diagnose.real import NEEDED, RECORDINGS, control, converted, silent
 
 pytestmark = NEEDED
 
@@ -44,6 +46,23 @@ def test_that_charge_is_lost_is_told_of_both_speeds(recording):
     ]  # fmt: skip
     assert found.unnamed is not None
     assert found.unnamed.nrmse_after < 1.2 * 0.285
+
+
+@for_each("every", [1, 2, 3])
+def test_a_ferroelectric_loop_is_nothing_viscous(every):
+    """Also where only every second or third sample is kept. An expert's plays leave 1.2 % of it."""
+    whole = load_rig(Path(RECORDINGS) / "hysteresis-loop").recording
+    kept = [
+        replace(run, time_s=run.time_s[::every], **{
+            name: {key: values[::every] for key, values in getattr(run, name).items()}
+            for name in ("channels", "valid", "saturated")
+        })
+        for run in whole.runs
+    ]  # fmt: skip
+    found = found_in(replace(whole, runs=tuple(kept)))
+    assert found.best is not None
+    assert [one.candidate.mechanism for one in found.best.settings] == ["hysteresis"]
+    assert found.held_out.nrmse_after < 1.2 * 0.012
 
 
 def test_voltages_of_other_presses_name_nothing(recording):
