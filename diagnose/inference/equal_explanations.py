@@ -2,7 +2,7 @@
 
 from diagnose.inference.grades import THRESHOLDS
 from diagnose.inference.held_out_scores import USUAL_SHAPE
-from diagnose.inference.hypotheses import Compared, Hypothesis, implausible
+from diagnose.inference.hypotheses import Compared, Hypothesis
 
 
 def explanations_as_good(found: Compared) -> list[int]:
@@ -18,8 +18,6 @@ def explanations_as_good(found: Compared) -> list[int]:
 
 def _is_as_good(found: Compared, number: int) -> bool:
     best, one = found.explained[0], found.explained[number]
-    if implausible(one.fit) and not implausible(best.fit):
-        return False
     chance, rival = float(found.probabilities[0]), float(found.probabilities[number])
     return rival > THRESHOLDS.rival * (chance + rival) or found.judge.apart(best, one) < USUAL_SHAPE
 

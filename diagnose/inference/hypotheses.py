@@ -166,10 +166,8 @@ def compared(judge: Judge, rng: np.random.Generator, report: Report) -> Compared
         found += more
         grown = _best_first([*more, *grown])
     ordered = _sound_first(found)
-    rivals = (*ordered, judge.nothing, judge.something_else)
-    counted = [n for n, one in enumerate(rivals) if not (_is_sound(ordered) and implausible(one.fit))]
-    probabilities = np.zeros(len(rivals))
-    probabilities[counted] = held_out_probabilities(np.array([rivals[n].scored.log_scores for n in counted]), rng)
+    scores = [one.scored.log_scores for one in (*ordered, judge.nothing, judge.something_else)]
+    probabilities = held_out_probabilities(np.array(scores), rng)
     return Compared(judge, tuple(ordered), judge.nothing, judge.something_else, probabilities)
 
 
@@ -182,10 +180,6 @@ def implausible(fit: Fitted | None) -> tuple[str, ...]:
             if end != 0.0 and abs(value - end) <= close and not plausible:
                 found.append(f"{coordinate.name.replace('_', ' ')} = {figure(value)}")
     return tuple(found)
-
-
-def _is_sound(ordered: Sequence[Hypothesis]) -> bool:
-    return bool(ordered) and not implausible(ordered[0].fit)
 
 
 def _sound_first(found: Sequence[Hypothesis]) -> list[Hypothesis]:
