@@ -1,17 +1,15 @@
 """How far an ordinary rig, a law and another good code may be off: a Gaussian process in parts of unknown size.
 
-Each part is relative to the signal of its channel (after Kennedy and O'Hagan, J. R. Stat. Soc. B 63 (2001) 425):
-
-    gain and shape over a press, a few cosines over each press of a run, times the signal
+After Kennedy and O'Hagan, J. R. Stat. Soc. B 63 (2001) 425. Each part is relative to the signal of its channel:
+    shape over a press: a few cosines over each press of a run, times the signal
     shape over depth, the same in all runs: the error of a model, and most of what two good codes differ by
     rate, the derivative of the signal over time: a small memory of the rig
     play, the signal less what a play operator makes of it: rate-independent hysteresis of a stage or load cell
     drift, a few cosines over each run
     first touch, what a dot that touches some micrometres later would change there: softness of a surface
     the rest, random, with the spectrum of a random walk in each phase
-
 All but the rest are columns with normal weights. The sizes of columns and rest, for forces and voltages apart, are not
-known: what is judged with a discrepancy integrates over them under SIZE_PRIORS.
+known: what is judged with a discrepancy integrates over them (inference/held_out_scores.py).
 """
 
 from collections.abc import Sequence

@@ -1,6 +1,5 @@
 """What may be said of a mismatch: an ordered list of rules, each of which looks at the evidence and speaks or passes.
-
-The first rule that speaks decides. All thresholds are in the table THRESHOLDS, with what they mean.
+The first one that speaks decides. All thresholds are in the table THRESHOLDS, with what they mean.
 """
 
 from collections.abc import Callable

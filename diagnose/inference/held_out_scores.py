@@ -2,9 +2,7 @@
 
 The score of a condition is the logarithm of its predictive density given all others, linear about the fit to all, with
 everything linear integrated out and the sizes of the discrepancy summed over a grid under their priors:
-
     p(y_k | others) = sum_s prior(s) p(y | s) / sum_s prior(s) p(others | s)
-
 So no hypothesis is judged by the size that another one needs, and a hypothesis that leaves much pays for it.
 """
 

@@ -93,7 +93,7 @@ CASES = {
         "segment.effector.material = 'pvdf': this material is of model 'piezoelectric-film'; effector must not be one"
     ),
     # physics that is known but not modelled
-    "[[mechanisms]]\nname = 'visco'": "mechanisms[0].name = 'visco': did you mean 'viscoelasticity'?",
+    "[[mechanisms]]\nname = 'viscoelast'": "mechanisms[0].name = 'viscoelast': did you mean 'viscoelasticity'?",
     "[[mechanisms]]\nname = 'friction'\ncomponent = 'film'": ("mechanisms[0].component = 'film': friction acts on dot"),
     "[[mechanisms]]\nname = 'friction'\ncomponent = 'dot'\nparameters = {mu = 0.3}": (
         "mechanisms[0].parameters.mu: friction takes coefficient"
