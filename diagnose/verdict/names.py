@@ -44,14 +44,18 @@ def mechanism_words(mechanism: str, component: str) -> str:
 
 
 def setting_words(setting: Setting) -> str:
-    """Half a sentence on a mechanism with its values: a law may do the opposite of what it is named for."""
+    """Half a sentence on a mechanism with its values: a law may do the opposite of what it is named for.
+
+    What would be the very same element of the model is told with it.
+    """
     mechanism, component = setting.candidate.name
     known = vocabulary().get(mechanism)
     if known is not None and known.below_one is not None:
         ratio, words = known.below_one
         if setting.candidate.derived(setting.values).get(ratio, 1.0) < 1.0:
             return words.format(component_words(component))
-    return mechanism_words(mechanism, component)
+    same = [mechanism_words(*name) for name in setting.candidate.identical_to]
+    return join_words([mechanism_words(mechanism, component), *same], "or, which is the same here,")
 
 
 def model_words(model: FittedModel) -> str:

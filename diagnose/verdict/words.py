@@ -115,7 +115,10 @@ def _parameter_words(model: FittedModel) -> str:
     words = []
     for setting, intervals in zip(model.settings, model.parameters, strict=True):
         derived = setting.candidate.derived(setting.values)
-        words += [interval_words(name, each) for name, each in intervals.items() if not derived or name in derived]
+        for name, each in intervals.items():
+            if not derived or name in derived:
+                side = " to either side" if name.partition("[")[0] in setting.candidate.either_sign else ""
+                words.append(f"{interval_words(name, each)}{side}")
     return f"; {', '.join(words)}" if words else ""
 
 

@@ -298,3 +298,18 @@ def test_of_a_law_with_many_constants_only_what_they_come_to(recording):
     model = fitted(law, 1.5)
     lines = told(recording, found(recording, (model,), model, ((0,),)))
     assert lines[1] == "Left out: medium 1 stiffens at large strain; force ratio 2.5 (90 % interval 2 to 3)."
+
+
+def test_what_is_the_same_element_of_the_model_is_told_with_it():
+    twin = replace(LEAK, identical_to=(("charge-leakage", "film"),))
+    words = setting_words(Setting(twin, (1.0,)))
+    assert words == (
+        f"{mechanism_words('charge-leakage', 'readout')} or, which is the same here, "
+        f"{mechanism_words('charge-leakage', 'film')}"
+    )
+
+
+def test_a_sign_that_symmetry_leaves_open_is_told_as_either_side(recording):
+    aside = fitted(replace(LEAK, either_sign=("resistance_MOhm",)), 0.5)
+    words = " ".join(told(recording, found(recording, (aside,), aside, ((0,),))))
+    assert ") to either side" in words
