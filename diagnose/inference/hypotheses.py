@@ -21,7 +21,7 @@ from diagnose.fit.rig_discrepancy import VISIBLE_ERROR, RigDiscrepancy, played
 from diagnose.fit.samples import SampleBlock, Samples
 from diagnose.forward import Candidate
 from diagnose.inference.grades import THRESHOLDS
-from diagnose.inference.held_out_scores import HeldOutScorer, LinearHypothesis, Scored
+from diagnose.inference.held_out_scores import USUAL_SHAPE, HeldOutScorer, LinearHypothesis, Scored
 from diagnose.inference.screening import Screening
 from diagnose.inference.search import first_fits, paired, pairs, singles
 from diagnose.noise.repeats import repeat_groups
@@ -170,18 +170,25 @@ def compared(judge: Judge, rng: np.random.Generator, report: Report) -> Compared
     scores = [one.scored.log_scores for one in (*ordered, judge.nothing, judge.something_else)]
     probabilities = held_out_probabilities(np.array(scores), rng)
     if ordered:
-        first = _simplest(ordered, probabilities)
+        first = _simplest(judge, ordered, probabilities)
         order = [first, *(n for n in range(len(scores)) if n != first)]
         ordered, probabilities = [ordered[n] for n in order[: len(ordered)]], probabilities[order]
     return Compared(judge, tuple(ordered), judge.nothing, judge.something_else, probabilities)
 
 
-def _simplest(ordered: Sequence[Hypothesis], probabilities: Floats) -> int:
+def _simplest(judge: Judge, ordered: Sequence[Hypothesis], probabilities: Floats) -> int:
     """Number of the first, or of what holds a part of its mechanisms only and is not excluded beside it."""
     names = [{candidate.name for candidate in one.candidates} for one in ordered]
-    least = THRESHOLDS.rival * probabilities[0]
-    parts = [n for n in range(len(ordered)) if names[n] < names[0] and probabilities[n] > least]
+    parts = [n for n in range(len(ordered)) if names[n] < names[0] and as_good(judge, ordered, probabilities, n)]
     return min(parts, key=lambda n: len(names[n]), default=0)
+
+
+def as_good(judge: Judge, ordered: Sequence[Hypothesis], probabilities: Floats, number: int) -> bool:
+    """Whether an explanation is not excluded beside the first: it is probable, or its forecast differs by no more than
+    those of two good codes.
+    """
+    least = THRESHOLDS.rival * float(probabilities[0] + probabilities[number])
+    return float(probabilities[number]) > least or judge.apart(ordered[0], ordered[number]) < USUAL_SHAPE
 
 
 def implausible(fit: Fitted | None) -> tuple[str, ...]:
