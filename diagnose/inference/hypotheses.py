@@ -16,7 +16,7 @@ from diagnose.fit.baseline import cap_nuisances, hold_strained_nuisances
 from diagnose.fit.descent import coordinates
 from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import Fitted
+from diagnose.fit.refit import Fitted, fit_mechanisms
 from diagnose.fit.rig_discrepancy import VISIBLE_ERROR, RigDiscrepancy, played
 from diagnose.fit.samples import SampleBlock, Samples
 from diagnose.forward import Candidate
@@ -36,16 +36,21 @@ WORTH_NATS, WORTH_SHARE = 3.0, 0.5
 """What another mechanism must gain, over all conditions, to be a hypothesis beside those that it is added to, and the
 most of their squares that it may leave."""
 PLAY_SHARES = (0.05, 0.15, 0.4)  # of the range of a drive: thresholds of the play operators of something else
+MUCH_LEFT = 0.005  # size of the rest of a discrepancy beyond which a fit is made anew beside it
 FLAT = 1e6  # sigma of the noise over all samples: a prior for what has none
 
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """fit : None for nothing and for something else. left : (n,) squares above noise of what it leaves of conditions
-    that were left out, relative to the signal of each channel.
+    """A hypothesis with its score.
+
+    fit : None for nothing and for something else. found_as : the fit beside which further mechanisms are sought, with a
+    small discrepancy only. left : (n,) squares above noise of what it leaves of conditions that were left out, relative
+    to the signal of each channel.
     """
 
     fit: Fitted | None
+    found_as: Fitted | None
     scored: Scored
     left: Floats
 
@@ -88,22 +93,37 @@ class Judge:
     @cached_property
     def nothing(self) -> Hypothesis:
         """The baseline, with strained nuisances held at what the experimenter declared."""
-        return self._hypothesis(None, hold_strained_nuisances(self.found.start, self.found.baseline))
+        system = hold_strained_nuisances(self.found.start, self.found.baseline)
+        return self._hypothesis(None, system, self.model.tolerance)
 
     @cached_property
     def something_else(self) -> Hypothesis:
         """The baseline with a flexible memory."""
         system = hold_strained_nuisances(self.found.start, self.found.baseline)
-        return self._hypothesis(None, system, flexible_memory(self.model.samples))
+        return self._hypothesis(None, system, self.model.tolerance, flexible_memory(self.model.samples))
 
     def scored(self, fit: Fitted) -> Hypothesis:
-        """The hypothesis of a fit."""
-        return self._hypothesis(fit, cap_nuisances(fit.system))
+        """The hypothesis of a fit; where it leaves much it is fitted anew beside so much, and the better one counts.
 
-    def _hypothesis(self, fit: Fitted | None, system: LinearisedSystem, memory: Floats | None = None) -> Hypothesis:
-        linear = self._linear(fit, system, memory)
+        Beside little noise a law that is not exact would follow its smallest details otherwise.
+        """
+        first = self._hypothesis(fit, cap_nuisances(fit.system), self.model.tolerance)
+        rest = np.array([first.scored.sizes[f"rest {unit}"] for unit in self.discrepancy.kinds])
+        if rest.max() <= MUCH_LEFT:
+            return first
+        tolerance = rest[self.discrepancy.kind] ** 2 * self.discrepancy.rough
+        start = replace(self.found.start, values=fit.system.values)
+        again = fit_mechanisms(self.model.with_tolerance(tolerance), start, fit.candidates, fit.values, 0.0)
+        other = self._hypothesis(again, cap_nuisances(again.system), tolerance)
+        return replace(other, found_as=fit) if other.score > first.score else first
+
+    def _hypothesis(
+        self, fit: Fitted | None, system: LinearisedSystem, tolerance: Floats, memory: Floats | None = None
+    ) -> Hypothesis:
+        """tolerance : (n,) variance of a discrepancy that the system has among its noise."""
+        linear = self._linear(fit, replace(system, numerical=system.numerical - tolerance), memory)
         scored = self.scorer.scored(linear)
-        return Hypothesis(fit, scored, self.discrepancy.relative_squares(scored.missed))
+        return Hypothesis(fit, fit, scored, self.discrepancy.relative_squares(scored.missed))
 
     def _linear(self, fit: Fitted | None, system: LinearisedSystem, memory: Floats | None) -> LinearHypothesis:
         """Without the errors of the engine among the columns, which the discrepancy has."""
@@ -126,8 +146,7 @@ class Judge:
         own += [False] * (len(sigma) - len(own))
         length = np.linalg.norm(columns[system.informative], axis=0)
         sigma = np.where(np.isinf(sigma), FLAT / np.maximum(length, 1.0), sigma)
-        exact = replace(system, numerical=system.numerical - self.model.tolerance)
-        return LinearHypothesis(exact, residual, columns, sigma, flexible, np.array(own, dtype=bool))
+        return LinearHypothesis(system, residual, columns, sigma, flexible, np.array(own, dtype=bool))
 
     def share(self, one: Hypothesis) -> float:
         """Share of the excess of nothing that a hypothesis accounts for in conditions that were left out."""
@@ -220,8 +239,8 @@ def _with_one_more(judge: Judge, found: Sequence[Hypothesis], report: Report) ->
     seen = {frozenset(c.name for c in one.candidates) for one in found}
     more: list[Hypothesis] = []
     for first in firsts:
-        assert first.fit is not None
-        for fit in pairs(judge.model, judge.found, first.fit, [], report):
+        assert first.found_as is not None
+        for fit in pairs(judge.model, judge.found, first.found_as, [], report):
             if (names := frozenset(c.name for c in fit.candidates)) not in seen:
                 seen.add(names)
                 more.append(judge.scored(fit))
@@ -245,10 +264,10 @@ def _in_its_place(
     first, second = pair.candidates
     start, others = pair.fit.values[len(first.coordinates) :], []
     for one in found:
-        if one.fit is not None and len(one.candidates) == 1:
+        if one.found_as is not None and len(one.candidates) == 1:
             names = frozenset((one.candidates[0].name, second.name))
             if len(names) == 2 and names not in seen:
-                others += paired(judge.model, judge.found, one.fit, second, [start], report)
+                others += paired(judge.model, judge.found, one.found_as, second, [start], report)
     return [judge.scored(fit) for fit in others]
 
 
