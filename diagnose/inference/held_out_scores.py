@@ -22,8 +22,8 @@ from diagnose.fit.rig_discrepancy import RigDiscrepancy
 from diagnose.statistics.linear_gaussian import Sums
 from foundation.arrays import Bools, Floats, Ints
 
-SIZES = 1e-3 * 2.0 ** np.arange(11.0)
-"""Sizes of a discrepancy, relative to the signal: 0.1 % to 102 %."""
+SIZES = 1e-3 * 2.0 ** np.arange(8.0)
+"""Sizes of a discrepancy, relative to the signal: 0.1 % to 13 %. What is farther off is no discrepancy of a model."""
 USUAL_SHAPE, USUAL_ROUGH, USUAL_MEMORY = 0.005, 0.002, 0.05
 """Medians of the priors of the sizes, which are half-Cauchy: of the shapes half a per cent, what two good codes differ
 by and an ordinary rig adds; of the rest 0.2 %; of a memory that no mechanism explains 5 %."""

@@ -177,7 +177,9 @@ def compared(judge: Judge, rng: np.random.Generator, report: Report) -> Compared
     found = []
     for count, fit in enumerate(fits):
         report("held-out conditions", count, len(fits))
-        found.append(judge.scored(fit))
+        one = judge.scored(fit)
+        if judge.share(one) > 0.0:  # what predicts with more error than nothing explains nothing, whatever its score
+            found.append(one)
     grown = _best_first(found)
     while grown and len(grown[0].candidates) < MOST_MECHANISMS and _leaves_too_much(judge, grown[0]):
         more = _with_one_more(judge, grown, report)
