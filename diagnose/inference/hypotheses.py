@@ -242,7 +242,7 @@ def _with_one_more(judge: Judge, found: Sequence[Hypothesis], report: Report) ->
     more: list[Hypothesis] = []
     for first in firsts:
         assert first.found_as is not None
-        for fit in pairs(judge.model, judge.found, first.found_as, [], report):
+        for fit in pairs(judge.model, judge.found, first.found_as, report):
             if (names := frozenset(c.name for c in fit.candidates)) not in seen:
                 seen.add(names)
                 more.append(judge.scored(fit))

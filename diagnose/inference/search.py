@@ -69,22 +69,11 @@ def refined(
     return fits
 
 
-def pairs(
-    model: ObservedModel,
-    found: Screening,
-    first: Fitted,
-    same: Sequence[Candidate],
-    report: Report,
-    level: float = RATES.level,
-    least: float = 0.0,
-) -> list[Fitted]:
-    """The first mechanism with each second one that shows in what it leaves; same : those that act as the first.
-
-    level : p-value of the score test up to which a second one shows. least : share of the squares that it explains.
-    """
+def pairs(model: ObservedModel, found: Screening, first: Fitted, report: Report) -> list[Fitted]:
+    """The mechanisms of a fit with each further one that shows in what they leave."""
     if not model.has_answer(first.system.values, first.settings):  # a coupon's answer depends on where it starts
         return []
-    names = [one.name for one in (*first.candidates, *same)]
+    names = [one.name for one in first.candidates]
     others = [c for c in found.candidates if c.name not in names]
     each = [sensitivity(model, first.system.values, other, first.settings) for other in others]
     beside = replace(
@@ -93,8 +82,8 @@ def pairs(
         sigma_of_one=np.concatenate([np.full(first.slopes.shape[1], np.inf), first.system.sigma_of_one]),
     )
     tests = screened(beside, each, least_degrees(model))
-    shows = (tests.p_values <= level) & (tests.explained >= least)
-    shown = [int(n) for n in np.argsort(-tests.explained) if shows[n]][:MOST_PAIRS_PER_FIRST]
+    order = np.argsort(-tests.explained)
+    shown = [int(n) for n in order if tests.p_values[n] <= RATES.level][:MOST_PAIRS_PER_FIRST]
     fits = []
     for count, number in enumerate(shown):
         report("pairs", count, len(shown))

@@ -3,10 +3,18 @@
 
 def mechanism(draw, name, segment, dot) -> dict | None:
     """The table of one mechanism; None where this design cannot have it."""
-    media = [layer for layer in ("effector", "medium1", "medium2") if layer in segment]
-    bonds = ["bond-medium1-film", "bond-film-medium2", "bond-base"]
-    bonds += ["bond-effector-medium1"] if "effector" in segment else []
-    own = {
+    own = {**_of_the_circuit(draw), **_of_the_rig(draw), **_of_the_layers(draw, segment, dot)}
+    if name == "dimension-reduction" and dot["shape"] == "plate":
+        return None
+    if name == "crosstalk" and "electrodes" not in segment["film"]:
+        return None
+    component, parameters = own[name]()
+    return {"name": name, "component": component, "parameters": parameters}
+
+
+def _of_the_circuit(draw):
+    """Component and parameters of what acts behind the strain of the film, by name."""
+    return {
         "charge-leakage": lambda: (draw.among(("readout", "film")), {"resistance_MOhm": draw.log(0.1, 1e4)}),
         "parasitic-capacitance": lambda: ("readout", {"capacitance_pF": draw.between(1.0, 500.0)}),
         "low-pass": lambda: ("readout", _low_pass(draw)),
@@ -23,25 +31,19 @@ def mechanism(draw, name, segment, dot) -> dict | None:
             "film",
             {"charge_pC": draw.sign(1.0, 50.0), "area_exponent": draw.between(0.3, 3.0)},
         ),
-        "viscoelasticity": lambda: _relaxing(draw, media, ["film", *_bonded(segment)]),
-        "hyperelastic-stiffening": lambda: (draw.among(media), _stiffening(draw)),
-        "foam-densification": lambda: (draw.among(media), _foam(draw)),
-        "stress-softening": lambda: (
-            draw.among(media),
-            {"loss_ratio": draw.between(0.05, 0.6), "energy_MPa": draw.log(1e-5, 1e-2), "beta": draw.between(0.1, 0.5)},
-        ),
-        "film-yield": lambda: (
-            "film",
-            {"yield_stress_MPa": draw.log(5.0, 100.0), "hardening_modulus_MPa": draw.between(0.0, 100.0)},
-        ),
-        "adhesive-compliance": lambda: (draw.among(bonds), _adhesive(draw)),
-        "delamination": lambda: (draw.among(bonds[:3]), _patch(draw, segment)),
+        "hysteresis": lambda: ("film", {"play_shares": [draw.between(0.01, 0.5)], "play_pC": [draw.log(0.1, 100.0)]}),
+        "crosstalk": lambda: _crosstalk(draw),
+    }
+
+
+def _of_the_rig(draw):
+    """Component and parameters of what acts outside the layers, by name."""
+    return {
         "friction": lambda: ("dot", {"coefficient": draw.log(0.05, 1.2)}),
         "elastic-sides": lambda: ("sides", {"stiffness_N_per_mm3": draw.log(0.01, 100.0)}),
         "dot-offset": lambda: ("dot", {"offset_mm": [draw.sign(0.02, 0.3), 0.0]}),
         "contact-gap": lambda: ("dot", {"gap_mm": draw.between(0.01, 0.1)}),
         "rig-compliance": lambda: ("rig", {"compliance_mm_per_N": draw.log(1e-3, 1.0)}),
-        "film-prestretch": lambda: ("film", {"strain_x": draw.log(1e-4, 0.02), "strain_y": draw.sign(1e-4, 1e-3)}),
         "inertia": lambda: ("rig", {"moving_mass_g": draw.log(0.1, 100.0)}),
         "guide-friction": lambda: (
             "rig",
@@ -55,17 +57,32 @@ def mechanism(draw, name, segment, dot) -> dict | None:
                 "stribeck_mm_per_s": draw.log(0.1, 10.0),
             },
         ),
-        "hysteresis": lambda: ("film", {"play_shares": [draw.between(0.01, 0.5)], "play_pC": [draw.log(0.1, 100.0)]}),
-        "crosstalk": lambda: _crosstalk(draw),
-        "property-error": lambda: _property(draw, media, dot),
         "dimension-reduction": lambda: ("dot", {}),
     }
-    if name == "dimension-reduction" and dot["shape"] == "plate":
-        return None
-    if name == "crosstalk" and "electrodes" not in segment["film"]:
-        return None
-    component, parameters = own[name]()
-    return {"name": name, "component": component, "parameters": parameters}
+
+
+def _of_the_layers(draw, segment, dot):
+    """Component and parameters of what layers and bonds do, by name."""
+    media = [layer for layer in ("effector", "medium1", "medium2") if layer in segment]
+    bonds = ["bond-medium1-film", "bond-film-medium2", "bond-base"]
+    bonds += ["bond-effector-medium1"] if "effector" in segment else []
+    return {
+        "viscoelasticity": lambda: _relaxing(draw, media, ["film", *_bonded(segment)]),
+        "hyperelastic-stiffening": lambda: (draw.among(media), _stiffening(draw)),
+        "foam-densification": lambda: (draw.among(media), _foam(draw)),
+        "stress-softening": lambda: (
+            draw.among(media),
+            {"loss_ratio": draw.between(0.05, 0.6), "energy_MPa": draw.log(1e-5, 1e-2), "beta": draw.between(0.1, 0.5)},
+        ),
+        "film-yield": lambda: (
+            "film",
+            {"yield_stress_MPa": draw.log(5.0, 100.0), "hardening_modulus_MPa": draw.between(0.0, 100.0)},
+        ),
+        "adhesive-compliance": lambda: (draw.among(bonds), _adhesive(draw)),
+        "delamination": lambda: (draw.among(bonds[:3]), _patch(draw, segment)),
+        "film-prestretch": lambda: ("film", {"strain_x": draw.log(1e-4, 0.02), "strain_y": draw.sign(1e-4, 1e-3)}),
+        "property-error": lambda: _property(draw, media, dot),
+    }
 
 
 def _bonded(segment):
