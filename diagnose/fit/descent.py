@@ -85,8 +85,8 @@ def descent(
     return Descent(model, system, tuple(candidates), model.vector(system.values, about) + system.residual)
 
 
-def descended(problem: Descent, start: Floats, least: float = LEAST_GAIN) -> tuple[Place, Floats]:
-    """The best place from a start (q,), and the slopes (n, q) there; a step that gains less than least is the last."""
+def descended(problem: Descent, start: Floats, rough: float = 0.0) -> tuple[Place, Floats]:
+    """The best place from a start (q,), and the slopes (n, q) there; a step that gains less than rough is the last."""
     slopes_at = lru_cache(maxsize=1)(problem.slopes)
 
     def expansion(here: Place) -> tuple[Floats, Floats]:
@@ -94,16 +94,17 @@ def descended(problem: Descent, start: Floats, least: float = LEAST_GAIN) -> tup
         cleared = problem.system.quadratic.apply_inverse(columns)
         return columns.T @ cleared, cleared.T @ here.left
 
-    patience = Patience(ITERATIONS, least, STILL)
+    usual = 0.5 * max(float(problem.system.informative.sum()), 1.0)
+    patience = Patience(ITERATIONS, LEAST_GAIN, STILL, usual, rough_gain=rough)
     found = minimised(problem.at, expansion, start, bounds(problem.candidates), patience)
     if not np.isfinite(found.cost):
         return found, np.zeros((len(found.predicted), len(start)))
     return found, slopes_at(found)
 
 
-def lowest(problem: Descent, starts: Sequence[Floats], least: float = LEAST_GAIN) -> Place | None:
+def lowest(problem: Descent, starts: Sequence[Floats], rough: float = 0.0) -> Place | None:
     """The best place from several starts (q,); none where the model has no answer."""
-    tries = [descended(problem, start, least)[0] for start in starts]
+    tries = [descended(problem, start, rough)[0] for start in starts]
     return min((place for place in tries if np.isfinite(place.cost)), key=lambda place: place.cost, default=None)
 
 

@@ -18,7 +18,7 @@ from diagnose.fit.observed_model import ObservedModel
 from diagnose.forward import Candidate
 from foundation.arrays import Floats
 
-PATIENCE = Patience(iterations=30, least_gain=0.01, still=0.05)
+ITERATIONS, LEAST_GAIN, STILL = 30, 0.01, 0.05
 
 
 @dataclass(frozen=True)
@@ -85,5 +85,6 @@ def fitted_jointly(
     """From values (q,) and the system's own nuisances."""
     problem = _Problem(model, system, candidates)
     start = np.concatenate([start, system.values])
-    found = minimised(problem.at, problem.expansion, start, problem.limits, PATIENCE)
+    patience = Patience(ITERATIONS, LEAST_GAIN, STILL, 0.5 * max(float(system.informative.sum()), 1.0))
+    found = minimised(problem.at, problem.expansion, start, problem.limits, patience)
     return Joint(found.values[: problem.count], found.values[problem.count :], found.cost)

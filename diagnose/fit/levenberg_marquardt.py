@@ -33,12 +33,15 @@ PointType = TypeVar("PointType", bound=CostedPoint)
 
 class Patience(NamedTuple):
     """iterations : the most. least_gain : of the cost, a step that gains less is the last. still : of a standard error,
-    a step below it is none.
+    a step below it is none. usual_cost : of noise alone. Where a fit leaves more, standard errors are larger by the
+    root of the ratio, and so are these. rough_gain : the same as least_gain, whatever a fit leaves.
     """
 
     iterations: int
     least_gain: float
     still: float
+    usual_cost: float
+    rough_gain: float = 0.0
 
 
 def minimised(
@@ -56,12 +59,14 @@ def minimised(
     damping = FIRST_DAMPING
     for _ in range(patience.iterations if np.isfinite(here.cost) else 0):
         hessian, gradient = expansion(here)
-        after, damping = _improved(at, here, hessian, gradient, damping, limits, patience.still)
+        misfit = max(here.cost / patience.usual_cost, 1.0)
+        after, damping = _improved(at, here, hessian, gradient, damping, limits, patience.still**2 * misfit)
         if after is None:
             break
         gain, moved = here.cost - after.cost, after.values - here.values
         here = after
-        if gain < patience.least_gain or float(moved @ hessian @ moved) < patience.still**2:
+        least_gain = max(patience.least_gain * misfit, patience.rough_gain)
+        if gain < least_gain or float(moved @ hessian @ moved) < patience.still**2 * misfit:
             break
     return here
 
@@ -73,16 +78,18 @@ def _improved(
     gradient: Floats,
     damping: float,
     limits: Floats,
-    still: float,
+    least_square: float,
 ) -> tuple[PointType | None, float]:
-    """A better point and the next damping; none where only steps too small to matter are left."""
+    """A better point and the next damping; none where only steps too small to matter are left, whose square in the
+    metric of the Hessian is below least_square.
+    """
     while damping < TIGHTEST:
         with suppress(ValueError):  # of a matrix that is not positive, or beyond all numbers
             step = bounded_step(hessian, gradient, damping, here.values, limits)
             after = at(here.values + step)
             if after.cost < here.cost:
                 return after, damping / 10.0
-            if float(step @ hessian @ step) < still**2:
+            if float(step @ hessian @ step) < least_square:
                 break
         damping = max(damping * 10.0, FIRST_DAMPING)
     return None, damping

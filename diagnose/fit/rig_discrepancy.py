@@ -7,7 +7,7 @@ After Kennedy and O'Hagan, J. R. Stat. Soc. B 63 (2001) 425. Each part is relati
     play, the signal less what a play operator makes of it: rate-independent hysteresis of a stage or load cell
     drift, a few cosines over each run
     first touch, what a dot that touches some micrometres later would change there: softness of a surface
-    the rest, random, with the spectrum of a random walk in each phase
+    the rest, random in each phase, with the spectrum of a random walk, of flicker, or white
 All but the rest are columns with normal weights. The sizes of columns and rest, for forces and voltages apart, are not
 known: what is judged with a discrepancy integrates over them (inference/held_out_scores.py).
 """
@@ -19,6 +19,7 @@ import numpy as np
 
 from diagnose.fit.discrepancy import depth_columns, error_scale_signals, smooth_columns
 from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.relative_errors import RelativeErrors, plain_noise_variance
 from diagnose.fit.samples import SampleBlock, Samples
 from diagnose.forward import Signals
 from foundation.arrays import Floats, Ints
@@ -33,53 +34,40 @@ SOFT_TOUCH_MM = 0.002
 TOUCH_SHARE = 0.1  # of the deepest press: over this depth the softness of the first touch fades
 FLOOR = 0.05  # of the root mean square of a press: what counts as signal where there is none
 DRIFT_ORDERS = 2
+SPECTRA = (2.0, 1.0, 0.0)
+"""Powers of the frequency with which the rest may fall: a random walk, flicker, white."""
 
 
 class RigDiscrepancy:
     """Discrepancies of all samples.
 
     columns : (n, k) whitened, of size one. quantity : (k,) number of the kind of channel of each, -1 for a column whose
-    size is known. rough : (n,) variance of the rest at size one. plain : (n,) variance of the noise of each coefficient
-    in the square of its unit. channel : (n,) number of its channel. kinds : units of the quantities, "N", "V", "mm".
-    kind : (n,) number of the quantity.
+    size is known. rough : (s, n) variance of the rest at size one for each of SPECTRA. kinds : units of the quantities, "N", "V", "mm".
+    kind : (n,) number of the quantity. errors : relative to the signals.
     """
 
     def __init__(self, model: ObservedModel, values: Floats) -> None:
         """values : (p,) nuisances of the baseline, whose signals all parts are relative to."""
         samples = model.samples
         self.samples = samples
-        self.plain = plain_noise_variance(samples)
-        self.channel: Ints = samples.kind[samples.block_of]
         units = [name.rpartition("_")[2] for name in samples.channels]
         self.kinds = tuple(dict.fromkeys(units))
         of_channel = np.array([self.kinds.index(unit) for unit in units])
-        self.kind: Ints = of_channel[self.channel]
+        channel = samples.kind[samples.block_of]
+        self.kind: Ints = of_channel[channel]
         self._signals = model.signals(values)  # smooth: columns of what was measured would hold its very noise
-        self.rough, self.square = self._rough_variance(error_scale_signals(self._signals))
+        noise = plain_noise_variance(samples)
+        self.rough, squares = self._rough_variance(error_scale_signals(self._signals), noise)
+        self.errors = RelativeErrors(noise, squares, channel, np.ones(len(samples), dtype=bool))
         self.columns, self.quantity = self._columns(of_channel, model, values)
 
-    def relative_squares(self, residual: Floats) -> Floats:
-        """Squares (n,) of a whitened residual (n,) above noise; of each channel they sum to the square of the error
-        relative to its signal.
-        """
-        return np.asarray((residual**2 - 1.0) * self.plain / self.square[self.channel])
-
-    def noise_errors(self, place: Ints) -> Floats:
-        """One sigma of sums of relative_squares of noise alone over each place (n,), numbered from 0 on."""
-        return np.asarray(np.sqrt(np.bincount(place, 2.0 * (self.plain / self.square[self.channel]) ** 2)))
-
-    def errors(self, residual: Floats) -> Floats:
-        """Root mean square (c,) of a whitened residual (n,) in each channel, relative to its signal, above noise."""
-        squares = np.bincount(self.channel, self.relative_squares(residual), len(self.samples.channels))
-        return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
-
-    def _rough_variance(self, signals: Sequence[Signals]) -> tuple[Floats, Floats]:
-        """(n,) at size one, whitened, and the sum of squares of the signal (c,) of each channel."""
+    def _rough_variance(self, signals: Sequence[Signals], noise: Floats) -> tuple[Floats, Floats]:
+        """(s, n) at size one, whitened, and the squares (n,) of the signals."""
         samples = self.samples
-        found, square = np.empty(len(samples)), np.zeros(len(samples.channels))
+        found, squares = np.empty((len(SPECTRA), len(samples))), np.empty(len(samples))
         for block in samples.blocks:
             seen = signals[block.run][block.channel][block.observed_mask]
-            square[samples.channels.index(block.channel)] += float((seen**2).sum())
+            squares[block.rows] = seen**2
             presses = samples.press[block.rows]
             floor = np.empty(len(seen))
             for press in np.unique(presses):
@@ -88,9 +76,11 @@ class RigDiscrepancy:
             size = np.maximum(np.abs(seen), floor) ** 2
             for piece in samples.pieces_of(block):
                 rows = slice(piece.samples.start - block.rows.start, piece.samples.stop - block.rows.start)
-                falling = 1.0 / (1.0 + np.arange(rows.stop - rows.start)) ** 2
-                found[piece.samples] = float(size[rows].sum()) * falling / falling.sum() / self.plain[piece.samples]
-        return found, np.maximum(square, np.finfo(float).tiny)
+                order = 1.0 + np.arange(rows.stop - rows.start)
+                for spectrum, power in enumerate(SPECTRA):
+                    part = order**-power / np.sum(order**-power)
+                    found[spectrum, piece.samples] = float(size[rows].sum()) * part / noise[piece.samples]
+        return found, squares
 
     def _columns(self, of_channel: Ints, model: ObservedModel, values: Floats) -> tuple[Floats, Ints]:
         samples, ones = self.samples, [1.0] * len(self.samples.channels)
@@ -141,18 +131,6 @@ def played(signal: Floats, threshold: float) -> Floats:
     """
     follow = accumulate(signal.tolist(), lambda at, value: min(max(at, value - threshold), value + threshold))
     return np.fromiter(follow, dtype=np.float64, count=len(signal))
-
-
-def plain_noise_variance(samples: Samples) -> Floats:
-    """Variance (n,) of the noise of each coefficient before whitening, in the square of the channel's unit."""
-    found = np.empty(len(samples))
-    for block in samples.blocks:
-        for piece in samples.pieces_of(block):
-            density = block.whitening.density_in_piece(
-                piece.labels["piece"], samples.frequency_Hz[piece.samples], piece.step_s
-            )
-            found[piece.samples] = density / (2.0 * piece.step_s)
-    return found
 
 
 def _soft_touches(model: ObservedModel, values: Floats) -> list[Floats]:

@@ -39,7 +39,7 @@ def diagnose(recording: Recording, engine: Engine, seed: int, report: Report) ->
         return agreeing_findings(model, baseline, found, verdict)
     engine.prepare(engine.candidates, report)
     discrepancy = RigDiscrepancy(model, baseline.values)
-    model = model.with_tolerance(USUAL_ROUGH**2 * discrepancy.rough)
+    model = model.with_tolerance(USUAL_ROUGH**2 * discrepancy.rough[0])
     screening = screen(model, linearise(model, baseline.values), report)
     hypotheses = compared(Judge(model, screening, discrepancy), rng, report)
     return findings_of(hypotheses, found, report)

@@ -11,36 +11,54 @@ from dataclasses import dataclass
 from functools import cached_property, reduce
 from itertools import product
 from operator import add
+from typing import NamedTuple
 
 import numpy as np
 from scipy.special import logsumexp
 
 from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.marginal_likelihood import Quadratic
-from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.rig_discrepancy import RigDiscrepancy
+from diagnose.fit.rig_discrepancy import SPECTRA, RigDiscrepancy
+from diagnose.inference.conditions import Conditions
 from diagnose.statistics.linear_gaussian import Sums
-from foundation.arrays import Bools, Floats, Ints
+from foundation.arrays import Bools, Floats
 
 SIZES = 1e-3 * 2.0 ** np.arange(8.0)
-"""Sizes of a discrepancy, relative to the signal: 0.1 % to 13 %. What is farther off is no discrepancy of a model."""
+"""Sizes of a memory and of what is rough, relative to the signal: 0.1 % to 13 %."""
+SMOOTH_SIZES = SIZES[:5]
+"""Those of what is smooth, to 1.6 %: a rig or code that is farther off for a whole press has more than small flaws. Were
+more allowed, a fit would be praised for its details while it misses the press."""
+
+
+class Rest(NamedTuple):
+    """A random rest. size : relative to the signal. spectrum : its number in SPECTRA."""
+
+    size: float
+    spectrum: int
+
+
+RESTS = tuple(
+    Rest(float(size), number)
+    for number, power in enumerate(SPECTRA)
+    for size in (SMOOTH_SIZES if power > 0.0 else SIZES)
+)
 USUAL_SHAPE, USUAL_ROUGH, USUAL_MEMORY = 0.005, 0.002, 0.05
 """Medians of the priors of the sizes, which are half-Cauchy: of the shapes half a per cent, what two good codes differ
 by and an ordinary rig adds; of the rest 0.2 %; of a memory that no mechanism explains 5 %."""
 NEGLIGIBLE_NATS = 7.0  # below the likeliest sizes: these count for nothing
-MOST_FOLDS = 12  # groups of conditions that are left out in turn
 
 
 @dataclass(frozen=True)
 class Scored:
-    """log_scores : (f,) of each group of conditions. missed : (n,) whitened residual of each where it was left out,
-    with what belongs to its own runs, such as gains, fitted to it. sizes : the likeliest of the discrepancy, relative
-    to the signal, by name.
+    """log_scores : (f,) of each group of conditions that is judged. missed : (n,) whitened residual of each group where
+    it was left out, with what belongs to its own runs, such as gains, fitted to it. sizes : the likeliest of the
+    discrepancy, relative to the signal, by name. rest : (n,) variance of its random part.
     """
 
     log_scores: Floats
     missed: Floats
     sizes: dict[str, float]
+    rest: Floats
 
 
 @dataclass(frozen=True)
@@ -60,16 +78,29 @@ class LinearHypothesis:
 
 
 class HeldOutScorer:
-    """Scores hypotheses on the same groups of conditions. fold : (n,) number of the group of each coefficient."""
+    """Scores hypotheses on the same groups of conditions."""
 
-    def __init__(self, model: ObservedModel, discrepancy: RigDiscrepancy, conditions: Ints) -> None:
-        self.model, self.discrepancy = model, discrepancy
-        self.fold: Ints = np.unique(conditions, return_inverse=True)[1] % MOST_FOLDS
-        self.folds = int(self.fold.max()) + 1
+    def __init__(self, discrepancy: RigDiscrepancy, conditions: Conditions) -> None:
+        self.discrepancy, self.fold, self.judged = discrepancy, conditions.fold, conditions.judged
+        self.folds = len(conditions.judged)
 
     def scored(self, hypothesis: LinearHypothesis) -> Scored:
         """The hypothesis on all groups."""
         return _Scoring(self, hypothesis).scored()
+
+
+class _Unknown(NamedTuple):
+    """A size that is summed over. sizes : (v,) that it may have. usual : median of its prior."""
+
+    name: str
+    sizes: Floats
+    usual: float
+
+    def near(self, number: int) -> list[int]:
+        """Numbers of the sizes next to one and of itself."""
+        ratio = self.sizes / self.sizes[number]
+        count = np.arange(len(ratio))
+        return [int(n) for n in np.flatnonzero((np.abs(count - number) <= 1) & (ratio < 2.1) & (ratio > 0.4))]
 
 
 class _Scoring:
@@ -83,55 +114,57 @@ class _Scoring:
         self.columns = np.hstack([one.columns[self.rows], found.columns[self.rows]])
         self.residual = one.residual[self.rows]
         self.fold, self.kind = scorer.fold[self.rows], found.kind[self.rows]
-        self.variance, self.rough = system.variance[self.rows], found.rough[self.rows]
+        self.variance, self.rough = system.variance[self.rows], found.rough[:, self.rows]
         self.kinds = len(found.kinds)
         self._sums: dict[tuple[int, int], list[tuple[Sums, float]]] = {}
 
     @cached_property
-    def axes(self) -> list[tuple[str, float]]:
-        """Name and usual size of each size that is not known: shape and rest of each quantity, and a memory."""
+    def axes(self) -> list[_Unknown]:
+        """What is not known: the size of the shapes and the rest of each quantity, and the size of a memory."""
         units = self.scorer.discrepancy.kinds
-        axes = [(f"shape {unit}", USUAL_SHAPE) for unit in units] + [(f"rest {unit}", USUAL_ROUGH) for unit in units]
-        return [*axes, ("memory", USUAL_MEMORY)] if self.one.memory.any() else axes
+        found = [_Unknown(f"shape {unit}", SMOOTH_SIZES, USUAL_SHAPE) for unit in units]
+        found += [_Unknown(f"rest {unit}", np.array([one.size for one in RESTS]), USUAL_ROUGH) for unit in units]
+        return [*found, _Unknown("memory", SIZES, USUAL_MEMORY)] if self.one.memory.any() else found
 
     def scored(self) -> Scored:
         best = self._likeliest()
         states = list(self._around(best))
         whole = np.array([self._log_evidence(state, None) for state in states])
         kept = whole > whole.max() - NEGLIGIBLE_NATS
-        scores = np.empty(self.scorer.folds)
-        for fold in range(self.scorer.folds):
-            others = [self._log_evidence(state, fold) for state, one in zip(states, kept, strict=True) if one]
-            scores[fold] = logsumexp(whole[kept]) - logsumexp(others)
-        sizes = {name: float(SIZES[n]) for (name, _), n in zip(self.axes, best, strict=True)}
-        return Scored(scores, self._missed(best), sizes)
+        scores = []
+        for fold in np.flatnonzero(self.scorer.judged):
+            others = [self._log_evidence(state, int(fold)) for state, one in zip(states, kept, strict=True) if one]
+            scores.append(float(logsumexp(whole[kept]) - logsumexp(others)))
+        sizes = {axis.name: float(axis.sizes[n]) for axis, n in zip(self.axes, best, strict=True)}
+        return Scored(np.array(scores), self._missed(best), sizes, self._rest(best))
 
     def _likeliest(self) -> tuple[int, ...]:
         """Numbers of the likeliest sizes, one after the other until none changes."""
-        state = [int(np.searchsorted(SIZES, usual)) for _, usual in self.axes]
+        state = [int(np.argmin(np.abs(np.log(axis.sizes / axis.usual)))) for axis in self.axes]
         for _ in range(4):
             before = list(state)
-            for axis in range(len(state)):
-                tried = [self._log_evidence((*state[:axis], n, *state[axis + 1 :]), None) for n in range(len(SIZES))]
-                state[axis] = int(np.argmax(tried))
+            for at, axis in enumerate(self.axes):
+                tried = [self._log_evidence((*state[:at], n, *state[at + 1 :]), None) for n in range(len(axis.sizes))]
+                state[at] = int(np.argmax(tried))
             if state == before:
                 break
         return tuple(state)
 
     def _around(self, best: tuple[int, ...]) -> Iterator[tuple[int, ...]]:
         """All sizes next to the likeliest."""
-        return product(*(range(max(n - 1, 0), min(n + 2, len(SIZES))) for n in best))
+        return product(*(axis.near(n) for axis, n in zip(self.axes, best, strict=True)))
 
     def _log_evidence(self, state: tuple[int, ...], without: int | None) -> float:
         """Logarithm of prior and evidence of all groups but one, a flat prior having the density 1."""
         sums, scale = self._parts(state, without)
-        prior = sum(_log_half_cauchy(SIZES[n], usual) for n, (_, usual) in zip(state, self.axes, strict=True))
+        sized = zip(self.axes, state, strict=True)
+        prior = sum(_log_half_cauchy(axis.sizes[n], axis.usual) for axis, n in sized)
         return sums.log_evidence(self._sigma(state)) + scale + prior
 
     def _sigma(self, state: tuple[int, ...]) -> Floats:
         """Prior deviations (k,) of all columns."""
         one, quantity = self.one, self.scorer.discrepancy.quantity
-        size = np.array([SIZES[n] for n in state])
+        size = np.array([axis.sizes[n] for axis, n in zip(self.axes, state, strict=True)])
         own = one.sigma * np.where(one.memory, size[-1], 1.0)
         return np.concatenate([own, np.where(quantity < 0, 1.0, size[np.maximum(quantity, 0)])])
 
@@ -145,20 +178,28 @@ class _Scoring:
         ]
         return reduce(add, (sums for sums, _ in chosen)), sum(scale for _, scale in chosen)
 
-    def _by_fold(self, kind: int, size: int) -> list[tuple[Sums, float]]:
-        """Sums of each group in one quantity, with a rest of one size, and the logarithm of their weights."""
-        if (kind, size) not in self._sums:
+    def _by_fold(self, kind: int, rest: int) -> list[tuple[Sums, float]]:
+        """Sums of each group in one quantity, with one rest, and the logarithm of their weights."""
+        if (kind, rest) not in self._sums:
             found = []
             for fold in range(self.scorer.folds):
                 rows = (self.kind == kind) & (self.fold == fold)
-                weight = self._weight(size)[rows]
+                weight = self._weight(RESTS[rest])[rows]
                 sums = Sums.from_columns(self.columns[rows] * weight[:, None], self.residual[rows] * weight)
                 found.append((sums, float(np.log(weight).sum())))
-            self._sums[kind, size] = found
-        return self._sums[kind, size]
+            self._sums[kind, rest] = found
+        return self._sums[kind, rest]
 
-    def _weight(self, size: int) -> Floats:
-        return np.asarray(1.0 / np.sqrt(self.variance + SIZES[size] ** 2 * self.rough))
+    def _weight(self, rest: Rest) -> Floats:
+        return np.asarray(1.0 / np.sqrt(self.variance + rest.size**2 * self.rough[rest.spectrum]))
+
+    def _rest(self, state: tuple[int, ...]) -> Floats:
+        """Variance (n,) of the rest."""
+        found, variance = self.scorer.discrepancy, np.empty(len(self.scorer.fold))
+        for kind in range(self.kinds):
+            rest, rows = RESTS[state[self.kinds + kind]], found.kind == kind
+            variance[rows] = rest.size**2 * found.rough[rest.spectrum, rows]
+        return variance
 
     def _missed(self, state: tuple[int, ...]) -> Floats:
         """(n,) residual of each group as the others predict it, with what is the group's own fitted to it."""
@@ -168,7 +209,7 @@ class _Scoring:
         weight = np.empty(len(self.rows))
         for kind in range(self.kinds):
             rows = self.kind == kind
-            weight[rows] = self._weight(state[self.kinds + kind])[rows]
+            weight[rows] = self._weight(RESTS[state[self.kinds + kind]])[rows]
         for fold in range(self.scorer.folds):
             held = self.fold == fold
             mean = self._parts(state, fold if self.scorer.folds > 1 else None)[0].mean(sigma)

@@ -20,21 +20,22 @@ from diagnose.fit.refit import Fitted, fit_mechanisms
 from diagnose.fit.rig_discrepancy import VISIBLE_ERROR, RigDiscrepancy, played
 from diagnose.fit.samples import SampleBlock, Samples
 from diagnose.forward import Candidate
+from diagnose.inference.conditions import conditions_of
 from diagnose.inference.grades import THRESHOLDS
 from diagnose.inference.held_out_scores import USUAL_SHAPE, HeldOutScorer, LinearHypothesis, Scored
 from diagnose.inference.screening import Screening
 from diagnose.inference.search import first_fits, paired, pairs, singles
-from diagnose.noise.repeats import repeat_groups
 from diagnose.statistics.impulse_response import doubling_edges, lagged_means
 from diagnose.statistics.model_criteria import held_out_probabilities
-from foundation.arrays import Floats, Ints
+from foundation.arrays import Floats
 from foundation.progress import Report
 
-MOST_MECHANISMS, FEWEST_CONDITIONS = 3, 3
+MOST_MECHANISMS = 3
 MOST_FIRSTS = 3  # hypotheses beside which another mechanism is sought
 WORTH_NATS, WORTH_SHARE = 3.0, 0.5
 """What another mechanism must gain, over all conditions, to be a hypothesis beside those that it is added to, and the
 most of their squares that it may leave."""
+PART_SHARE = 0.5  # of the share of the best: what accounts for less is sought beside it, not it beside others
 PLAY_SHARES = (0.05, 0.15, 0.4)  # of the range of a drive: thresholds of the play operators of something else
 MUCH_LEFT = 0.005  # size of the rest of a discrepancy beyond which a fit is made anew beside it
 FLAT = 1e6  # sigma of the noise over all samples: a prior for what has none
@@ -46,7 +47,7 @@ class Hypothesis:
 
     fit : None for nothing and for something else. found_as : the fit beside which further mechanisms are sought, with a
     small discrepancy only. left : (n,) squares above noise of what it leaves of conditions that were left out, relative
-    to the signal of each channel.
+    to the signal of each channel, 0 where a condition is not judged.
     """
 
     fit: Fitted | None
@@ -88,7 +89,9 @@ class Judge:
 
     def __init__(self, model: ObservedModel, found: Screening, discrepancy: RigDiscrepancy) -> None:
         self.model, self.found, self.discrepancy = model, found, discrepancy
-        self.scorer = HeldOutScorer(model, discrepancy, condition_labels(model.samples))
+        conditions = conditions_of(model.samples)
+        self.scorer = HeldOutScorer(discrepancy, conditions)
+        self.errors = replace(discrepancy.errors, counted=conditions.judged[conditions.fold])
 
     @cached_property
     def nothing(self) -> Hypothesis:
@@ -108,13 +111,11 @@ class Judge:
         Beside little noise a law that is not exact would follow its smallest details otherwise.
         """
         first = self._hypothesis(fit, cap_nuisances(fit.system), self.model.tolerance)
-        rest = np.array([first.scored.sizes[f"rest {unit}"] for unit in self.discrepancy.kinds])
-        if rest.max() <= MUCH_LEFT:
+        if max(first.scored.sizes[f"rest {unit}"] for unit in self.discrepancy.kinds) <= MUCH_LEFT:
             return first
-        tolerance = rest[self.discrepancy.kind] ** 2 * self.discrepancy.rough
         start = replace(self.found.start, values=fit.system.values)
-        again = fit_mechanisms(self.model.with_tolerance(tolerance), start, fit.candidates, fit.values, 0.0)
-        other = self._hypothesis(again, cap_nuisances(again.system), tolerance)
+        again = fit_mechanisms(self.model.with_tolerance(first.scored.rest), start, fit.candidates, fit.values, 0.0)
+        other = self._hypothesis(again, cap_nuisances(again.system), first.scored.rest)
         return replace(other, found_as=fit) if other.score > first.score else first
 
     def _hypothesis(
@@ -123,7 +124,7 @@ class Judge:
         """tolerance : (n,) variance of a discrepancy that the system has among its noise."""
         linear = self._linear(fit, replace(system, numerical=system.numerical - tolerance), memory)
         scored = self.scorer.scored(linear)
-        return Hypothesis(fit, fit, scored, self.discrepancy.relative_squares(scored.missed))
+        return Hypothesis(fit, fit, scored, self.errors.above_noise(scored.missed))
 
     def _linear(self, fit: Fitted | None, system: LinearisedSystem, memory: Floats | None) -> LinearHypothesis:
         """Without the errors of the engine among the columns, which the discrepancy has."""
@@ -155,20 +156,16 @@ class Judge:
 
     def apart(self, one: Hypothesis, other: Hypothesis) -> float:
         """Root mean square difference of two forecasts, relative to the signal, of the worst channel."""
-        found = self.discrepancy
-        squares = (one.scored.missed - other.scored.missed) ** 2 * found.plain / found.square[found.channel]
-        return float(np.sqrt(np.bincount(found.channel, squares).max()))
+        return self.errors.largest(self.errors.squares(one.scored.missed - other.scored.missed))
 
     def known_share(self, one: Hypothesis) -> float:
         """The same share, were two sigma of the noise in what it leaves no more than noise."""
         before, after = float(self.nothing.left.sum()), float(one.left.sum())
-        noise = 2.0 * float(self.discrepancy.noise_errors(np.zeros(len(one.left), dtype=np.int64))[0])
-        return 1.0 - max(after - noise, 0.0) / before if before > 0.0 else 0.0
+        return 1.0 - max(after - 2.0 * self.errors.noise_sigma, 0.0) / before if before > 0.0 else 0.0
 
     def error(self, one: Hypothesis) -> float:
         """Root mean square error of a hypothesis in conditions left out, above noise, of the worst channel."""
-        squares = np.bincount(self.discrepancy.channel, one.left)
-        return float(np.sqrt(max(float(squares.max()), 0.0)))
+        return self.errors.largest(one.left)
 
 
 def compared(judge: Judge, rng: np.random.Generator, report: Report) -> Compared:
@@ -237,7 +234,7 @@ def _leaves_too_much(judge: Judge, one: Hypothesis) -> bool:
 def _with_one_more(judge: Judge, found: Sequence[Hypothesis], report: Report) -> list[Hypothesis]:
     """Hypotheses with one mechanism more than the best, that predict better than it; then what acts in place of one."""
     size, best = len(found[0].candidates), found[0]
-    firsts = [one for one in found if len(one.candidates) == size][:MOST_FIRSTS]
+    firsts = [one for one in found if len(one.candidates) == size and _is_a_part(judge, one, best)][:MOST_FIRSTS]
     seen = {frozenset(c.name for c in one.candidates) for one in found}
     more: list[Hypothesis] = []
     for first in firsts:
@@ -250,6 +247,11 @@ def _with_one_more(judge: Judge, found: Sequence[Hypothesis], report: Report) ->
     if more and size == 1:
         more += _worth_it(judge, _in_its_place(judge, found, more[0], seen, report), best)
     return _best_first(more)
+
+
+def _is_a_part(judge: Judge, one: Hypothesis, best: Hypothesis) -> bool:
+    """Whether a hypothesis accounts for enough that it may be one of two that account for all."""
+    return judge.share(one) >= PART_SHARE * judge.share(best)
 
 
 def _worth_it(judge: Judge, more: Sequence[Hypothesis], best: Hypothesis) -> list[Hypothesis]:
@@ -266,7 +268,7 @@ def _in_its_place(
     first, second = pair.candidates
     start, others = pair.fit.values[len(first.coordinates) :], []
     for one in found:
-        if one.found_as is not None and len(one.candidates) == 1:
+        if one.found_as is not None and len(one.candidates) == 1 and _is_a_part(judge, one, found[0]):
             names = frozenset((one.candidates[0].name, second.name))
             if len(names) == 2 and names not in seen:
                 others += paired(judge.model, judge.found, one.found_as, second, [start], report)
@@ -275,20 +277,6 @@ def _in_its_place(
 
 def _best_first(found: Sequence[Hypothesis]) -> list[Hypothesis]:
     return sorted(found, key=lambda one: -one.score)
-
-
-def condition_labels(samples: Samples) -> Ints:
-    """Labels (n,) of what is held out together: runs that repeat each other; of fewer than three such conditions their
-    presses, and of fewer than three presses their phases, since one rate or depth alone fixes no law.
-    """
-    home = {number: number for number in range(len(samples.recording.runs))}
-    for group in repeat_groups(samples.recording.runs, samples.recording.phases):
-        home |= dict.fromkeys(group, group[0])
-    conditions = np.array([home[number] for number in range(len(home))])[samples.run]
-    phases = np.unique(np.column_stack([samples.press, samples.phase]), axis=0, return_inverse=True)[1].ravel()
-    choices = (conditions, samples.press, phases)
-    found = next((labels for labels in choices if len(np.unique(labels)) >= FEWEST_CONDITIONS), phases)
-    return np.asarray(found, dtype=np.int64)
 
 
 def flexible_memory(samples: Samples) -> Floats:
