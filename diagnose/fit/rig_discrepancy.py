@@ -47,7 +47,9 @@ class RigDiscrepancy:
     """
 
     def __init__(self, model: ObservedModel, values: Floats) -> None:
-        """values : (p,) nuisances of the baseline, whose signals all parts are relative to."""
+        """values : (p,) nuisances of the baseline. All parts are relative to its signals, in the size of what was
+        recorded.
+        """
         samples = model.samples
         self.samples = samples
         units = [name.rpartition("_")[2] for name in samples.channels]
@@ -55,7 +57,8 @@ class RigDiscrepancy:
         of_channel = np.array([self.kinds.index(unit) for unit in units])
         channel = samples.kind[samples.block_of]
         self.kind: Ints = of_channel[channel]
-        self._signals = model.signals(values)  # smooth: columns of what was measured would hold its very noise
+        # smooth: columns of what was measured would hold its very noise
+        self._signals = _of_recorded_size(model.signals(values), samples)
         noise = plain_noise_variance(samples)
         self.rough, squares = self._rough_variance(error_scale_signals(self._signals), noise)
         self.errors = RelativeErrors(noise, squares, channel, np.ones(len(samples), dtype=bool))
@@ -123,6 +126,18 @@ class RigDiscrepancy:
             own = float(np.sqrt(np.mean(wave**2)))
             scaled.append((part, wave * (size / own if own > 0.0 else 0.0)))
         return scaled
+
+
+def _of_recorded_size(signals: Sequence[Signals], samples: Samples) -> list[dict[str, Floats]]:
+    """Signals of all runs, those of each channel times one factor that makes them as large as what was recorded."""
+    recorded, predicted = np.zeros(len(samples.channels)), np.zeros(len(samples.channels))
+    for block in samples.blocks:
+        number, seen = samples.channels.index(block.channel), block.observed_mask
+        recorded[number] += float((samples.recording.runs[block.run].channels[block.channel][seen] ** 2).sum())
+        predicted[number] += float((signals[block.run][block.channel][seen] ** 2).sum())
+    factor = np.sqrt(np.divide(recorded, predicted, out=np.ones_like(recorded), where=predicted > 0.0))
+    scale = dict(zip(samples.channels, factor.tolist(), strict=True))
+    return [{name: scale.get(name, 1.0) * values for name, values in run.items()} for run in signals]
 
 
 def played(signal: Floats, threshold: float) -> Floats:

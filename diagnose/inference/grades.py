@@ -21,6 +21,7 @@ class Thresholds:
     most, nearly_all : shares of the held-out excess for a main part, and for an identified explanation.
     confirmed : the same share where all is fitted anew to half of the presses and shown on the others.
     visible : error over the signal that flaws of an ordinary rig make.
+    left : error over the signal that an identified explanation may leave at most.
     largest_group : number of explanations that may stay together for a name to be given.
     """
 
@@ -32,6 +33,7 @@ class Thresholds:
     nearly_all: float = 0.95
     confirmed: float = 0.8
     visible: float = VISIBLE_ERROR
+    left: float = 0.1
     largest_group: int = RATES.largest_group
 
 
@@ -146,14 +148,14 @@ def every_rig_has_it(e: Evidence) -> Verdict | None:
 def identified(e: Evidence) -> Verdict | None:
     """Few explanations are left, which account for all but flaws of a rig, and nothing flexible does better."""
     small = e.error <= THRESHOLDS.visible and e.share >= THRESHOLDS.confirmed
-    whole = small or e.share >= THRESHOLDS.nearly_all
+    whole = small or (e.share >= THRESHOLDS.nearly_all and e.error <= THRESHOLDS.left)
     few = e.group <= THRESHOLDS.largest_group
     return Identified(_praise(e)) if whole and few and e.holds and not e.beaten and not e.implausible else None
 
 
 def main_part(e: Evidence) -> Verdict | None:
-    """Few explanations are left, which account for most."""
-    few = e.group <= THRESHOLDS.largest_group
+    """Few explanations are left, which account for most, with values that real parts can have."""
+    few = e.group <= THRESHOLDS.largest_group and not e.implausible
     return MainPart((*_praise(e), *_against(e))) if e.share >= THRESHOLDS.most and few and e.holds else None
 
 
@@ -196,7 +198,7 @@ def _praise(e: Evidence) -> tuple[str, ...]:
 def _against(e: Evidence) -> tuple[str, ...]:
     """Sentences on why it is not all, or not one."""
     found = []
-    if e.share < THRESHOLDS.nearly_all and e.error > THRESHOLDS.visible:
+    if e.error > (THRESHOLDS.visible if e.share < THRESHOLDS.nearly_all else THRESHOLDS.left):
         found.append("It leaves more than the flaws of an ordinary rig.")
     if e.confirmed is not None and not e.holds:
         found.append(

@@ -37,7 +37,6 @@ WORTH_NATS, WORTH_SHARE = 3.0, 0.5
 most of their squares that it may leave."""
 PART_SHARE = 0.5  # of the share of the best: what accounts for less is sought beside it, not it beside others
 PLAY_SHARES = (0.05, 0.15, 0.4)  # of the range of a drive: thresholds of the play operators of something else
-MUCH_LEFT = 0.005  # size of the rest of a discrepancy beyond which a fit is made anew beside it
 FLAT = 1e6  # sigma of the noise over all samples: a prior for what has none
 
 
@@ -106,12 +105,12 @@ class Judge:
         return self._hypothesis(None, system, self.model.tolerance, flexible_memory(self.model.samples))
 
     def scored(self, fit: Fitted) -> Hypothesis:
-        """The hypothesis of a fit; where it leaves much it is fitted anew beside so much, and the better one counts.
-
-        Beside little noise a law that is not exact would follow its smallest details otherwise.
+        """The hypothesis of a fit; where it leaves more than a rig's flaws it is fitted anew beside so much, without an
+        error of its law, and the better one counts. Beside little noise a law that is not exact would follow its
+        smallest details otherwise.
         """
         first = self._hypothesis(fit, cap_nuisances(fit.system), self.model.tolerance)
-        if max(first.scored.sizes[f"rest {unit}"] for unit in self.discrepancy.kinds) <= MUCH_LEFT:
+        if self.error(first) <= VISIBLE_ERROR:
             return first
         start = replace(self.found.start, values=fit.system.values)
         again = fit_mechanisms(self.model.with_tolerance(first.scored.rest), start, fit.candidates, fit.values, 0.0)
