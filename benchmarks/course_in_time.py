@@ -18,6 +18,7 @@ import numpy as np
 
 from benchmarks.timing import file_argument
 from foundation.arrays import Floats
+from foundation.errors import InputError
 from softdot.case import Case
 from solve.readout.course import PressCourse
 from solve.result import PressResult
@@ -172,10 +173,13 @@ def _off(time_s: Floats, own: Floats, fine_s: Floats, fine: Floats) -> float:
 
 def compared(number: int) -> dict[str, Any]:
     """One line of the file."""
-    start, tables = time.process_time(), design(number)
-    case = Case(**tables)
+    start = time.process_time()
+    try:
+        case = Case(**design(number))
+        results = [pressed(case, times) for times in (1, TIMES_AS_MANY)]
+    except InputError as error:  # parts that meet, for instance
+        return {"design": number, "stopped": str(error)}
     row = {"design": number, "load_steps": case.config.press.load_steps, "follows_time": case.model.follows_time}
-    results = [pressed(case, times) for times in (1, TIMES_AS_MANY)]
     failures = [result.failure for result in results if result.failure is not None]
     if failures:
         return {**row, "stopped": failures[0]}

@@ -46,14 +46,18 @@ class Nuisance:
 
 
 def declared_nuisances(recording: Recording, engine: Engine) -> tuple[Nuisance, ...]:
-    """Nuisances that rig.toml declares and the engine knows, and those that the engine itself leaves free."""
+    """Nuisances that rig.toml declares and the engine knows, and those that the engine itself leaves free.
+
+    A modulus is another one in each run where runs were made at several temperatures.
+    """
     found: list[Nuisance] = []
+    several = len({run.temperature_C for run in recording.runs if run.temperature_C is not None}) > 1
     shared: dict[str, float] = {}
     for number, run in enumerate(recording.runs):
         for name, sigma in run.nuisance.items():
             if acts_behind_model(run, name):
                 found += [Nuisance(name, number, sigma, channel=channel) for channel in owning_channels(run, name)]
-            elif name in GAINS or name in OFFSETS or name in CLOCKS:
+            elif name in GAINS or name in OFFSETS or name in CLOCKS or (several and name.startswith("modulus.")):
                 candidate = engine.nuisance(name)
                 found += [Nuisance(name, number, sigma, candidate)] if candidate is not None else []
             else:

@@ -126,6 +126,7 @@ def evidence_of(found: Compared, detected: Checked, group: Sequence[int], held_o
         confirmed=confirmed,
         ordinary=all(one.candidate.is_ordinary(one.values) for one in best.fit.settings),
         implausible=implausible(best.fit),
+        several=len(best.candidates) > 1,
     )
 
 

@@ -49,7 +49,8 @@ class Evidence:
     something else. group : number of explanations that cannot be told apart. shared, shared_probability : mechanism
     that most explanations hold, and its probability. kind : what all of the group have in common, "" for nothing.
     confirmed : share of the excess that a fit to half of the presses takes away from the others, None where none could
-    be held out. ordinary : whether every rig has as much of it. implausible : values at the end of what parts can have.
+    be held out. ordinary : whether every rig has as much of it. implausible : values at the end of what parts can
+    have. several : whether the best is more than one mechanism.
     """
 
     p_mismatch: float
@@ -65,6 +66,7 @@ class Evidence:
     confirmed: float | None = None
     ordinary: bool = False
     implausible: tuple[str, ...] = ()
+    several: bool = False
 
     @property
     def beaten(self) -> bool:
@@ -154,8 +156,8 @@ def identified(e: Evidence) -> Verdict | None:
 
 
 def main_part(e: Evidence) -> Verdict | None:
-    """Few explanations are left, which account for most, with values that real parts can have."""
-    few = e.group <= THRESHOLDS.largest_group and not e.implausible
+    """Few explanations are left, which account for most; several mechanisms only with values that parts can have."""
+    few = e.group <= THRESHOLDS.largest_group and not (e.implausible and e.several)
     return MainPart((*_praise(e), *_against(e))) if e.share >= THRESHOLDS.most and few and e.holds else None
 
 

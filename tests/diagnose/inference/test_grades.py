@@ -47,6 +47,7 @@ EVIDENCE = st.builds(
     confirmed=st.none() | st.floats(-1.0, 1.0),
     ordinary=st.booleans(),
     implausible=st.sampled_from([(), ("leak = 20",)]),
+    several=st.booleans(),
 )
 
 
@@ -63,6 +64,8 @@ EVIDENCE = st.builds(
         (replace(CLEAR, group=4), KindOnly),
         (replace(CLEAR, group=4, kind=""), Unexplained),
         (replace(CLEAR, implausible=("leak = 20",)), MainPart),
+        (replace(CLEAR, implausible=("leak = 20",), several=True), KindOnly),
+        (replace(CLEAR, error=0.2), MainPart),
         (replace(CLEAR, confirmed=0.5), Unexplained),
         (PART, MainPart),
         (replace(PART, error=0.008), Identified),  # no more than the flaws of an ordinary rig
@@ -96,6 +99,7 @@ def test_a_name_leaves_little_and_is_one_of_few(evidence):
         assert not evidence.ordinary
     if isinstance(verdict, Identified):
         assert evidence.error <= THRESHOLDS.visible or evidence.share >= THRESHOLDS.nearly_all
+        assert evidence.error <= THRESHOLDS.left
 
 
 @settings(max_examples=200, deadline=None)
