@@ -9,6 +9,7 @@ from scipy.optimize import least_squares, nnls
 from diagnose.engines.coupon.engine import coupon_engine
 from diagnose.engines.coupon.improved_material import improved_material
 from diagnose.engines.coupon.relaxation_spectrum import relaxation_times
+from diagnose.fit.nuisances import declared_nuisances
 from diagnose.forward import Setting
 from diagnose.signals.recording import Recording
 from diagnose.signals.time_scales import time_scales
@@ -267,3 +268,18 @@ def test_what_is_no_coupon_test():
     lone = type(lone)(**{**lone.__dict__, "channels": {"displacement_mm": TRAVEL, "voltage_V": TRAVEL}})
     with pytest.raises(InputError, match="column force_N is missing"):
         coupon_engine(Recording((lone,), specimen()), {"mine": RUBBER}, silent)
+
+
+def test_a_modulus_is_another_one_at_another_temperature_only():
+    """Runs at one temperature share it."""
+
+    def owners(*temperatures):
+        runs = tuple(
+            replace(run(), label=f"run {n}", temperature_C=at, nuisance={"modulus.specimen": 1.0})
+            for n, at in enumerate(temperatures)
+        )
+        recording = Recording(runs, specimen("tension"))
+        return [one.run for one in declared_nuisances(recording, coupon_engine(recording, {"mine": RUBBER}, silent))]
+
+    assert owners(20.0, 20.0, None) == [None]
+    assert owners(20.0, 50.0) == [0, 1]
