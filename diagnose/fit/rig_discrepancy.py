@@ -42,8 +42,8 @@ class RigDiscrepancy:
     """Discrepancies of all samples.
 
     columns : (n, k) whitened, of size one. quantity : (k,) number of the kind of channel of each, -1 for a column whose
-    size is known. rough : (s, n) variance of the rest at size one for each of SPECTRA. kinds : units of the quantities, "N", "V", "mm".
-    kind : (n,) number of the quantity. errors : relative to the signals.
+    size is known. rough : (s, n) variance of the rest at size one for each of SPECTRA. kinds : units of the quantities,
+    "N", "V", "mm". kind : (n,) number of the quantity. errors : relative to the signals.
     """
 
     def __init__(self, model: ObservedModel, values: Floats) -> None:

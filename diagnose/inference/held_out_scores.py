@@ -26,8 +26,8 @@ from foundation.arrays import Bools, Floats
 SIZES = 1e-3 * 2.0 ** np.arange(8.0)
 """Sizes of a memory and of what is rough, relative to the signal: 0.1 % to 13 %."""
 SMOOTH_SIZES = SIZES[:5]
-"""Those of what is smooth, to 1.6 %: a rig or code that is farther off for a whole press has more than small flaws. Were
-more allowed, a fit would be praised for its details while it misses the press."""
+"""Those of what is smooth, to 1.6 %: a rig or code that is farther off for a whole press has more than small flaws.
+Were more allowed, a fit would be praised for its details while it misses the press."""
 
 
 class Rest(NamedTuple):
