@@ -129,8 +129,9 @@ def agreement(e: Evidence) -> Verdict | None:
 
 
 def no_explanation(e: Evidence) -> Verdict | None:
-    """No mechanism shows at all."""
-    return None if e.best else Unexplained(("The residual resembles none of the candidates more than chance allows.",))
+    """No mechanism shows and predicts anything."""
+    said = "No candidate both shows in the residual and predicts what was held out better than your simulation does."
+    return None if e.best else Unexplained((said,))
 
 
 def nothing_predicts(e: Evidence) -> Verdict | None:
