@@ -106,7 +106,7 @@ class Judge:
 
     def scored(self, fit: Fitted) -> Hypothesis:
         """The hypothesis of a fit; where it leaves more than a rig's flaws it is fitted anew beside so much, without an
-        error of its law, and the better one counts. Beside little noise a law that is not exact would follow its
+        error of its law, and what predicts better counts. Beside little noise a law that is not exact would follow its
         smallest details otherwise.
         """
         first = self._hypothesis(fit, cap_nuisances(fit.system), self.model.tolerance)
@@ -115,7 +115,7 @@ class Judge:
         start = replace(self.found.start, values=fit.system.values)
         again = fit_mechanisms(self.model.with_tolerance(first.scored.rest), start, fit.candidates, fit.values, 0.0)
         other = self._hypothesis(again, cap_nuisances(again.system), first.scored.rest)
-        return replace(other, found_as=fit) if other.score > first.score else first
+        return replace(other, found_as=fit) if self.error(other) < self.error(first) else first
 
     def _hypothesis(
         self, fit: Fitted | None, system: LinearisedSystem, tolerance: Floats, memory: Floats | None = None
