@@ -44,14 +44,15 @@ class Sizing:
         z = points[:, 2]
         to_film = np.abs(z - np.clip(z, self.outline.film_bottom, self.outline.film_top))
         film = self.film_mm + SIZE_GROWTH * to_film
-        edge, growth = (
-            (SLICE_RIM_SIZE_SHARE, SLICE_RIM_SIZE_GROWTH)
-            if self.outline.is_slice
-            else (RIM_SIZE_SHARE, RIM_SIZE_GROWTH)
-        )
-        rim = edge * self.film_mm + growth * np.hypot(to_film, self._distance_to_side(points))
+        rim = self._rim_size(np.hypot(to_film, self._distance_to_side(points)))
         fine = np.minimum(np.minimum(contact, film), rim)
         return np.minimum(fine, self.coarse_mm)
+
+    def _rim_size(self, away: Floats) -> Floats:
+        """Edge lengths (n,) in mm at a distance (n,) in mm from the rim of the film."""
+        of_slice, of_solid = (SLICE_RIM_SIZE_SHARE, SLICE_RIM_SIZE_GROWTH), (RIM_SIZE_SHARE, RIM_SIZE_GROWTH)
+        share, growth = of_slice if self.outline.is_slice else of_solid
+        return np.asarray(share * self.film_mm + growth * away)
 
     def _distance_to_side(self, points: Floats) -> Floats:
         """Distance (n,) in mm to the nearest side that the case may hold."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from foundation.arrays import Floats, Ints
+from foundation.arrays import Bools, Floats, Ints
 from geometry.dot import DotShape
 from geometry.parameters import Segment
 from mesh.film_layers import section_with_film
@@ -23,9 +23,14 @@ def layered_slice(segment: Segment, dot: DotShape, options: MeshOptions, planes:
     thickness_mm = options.contact_element_size_mm
     stack = stack_outline(segment, slice_mm=thickness_mm, planes=planes)
     field = sizing_field(stack, dot, options)
-    return extrude_section(
-        structured_section(stack, field, *layer_heights(stack, field, options.film_layers)), thickness_mm
-    )
+    half, foot = stack.half_x, stack.effector_half_x
+    edges = [-half, -foot, 0.0, foot, half] if 0.0 < foot < half * (1 - 1e-9) else [-half, 0.0, half]
+
+    def holds(layer: str, x: Floats, _height: float) -> Bools:
+        return np.abs(x) < (foot if layer == "effector" else half)
+
+    section = structured_section(field, *layer_heights(stack, field, options.film_layers), edges, holds)
+    return extrude_section(section, thickness_mm)
 
 
 def tetwild_slice(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> LinearMesh:

@@ -18,6 +18,7 @@ from softdot.prepared_press import PreparedPress
 from solve.model import Model
 
 if TYPE_CHECKING:
+    from softdot.arrays.case import ArrayCase
     from softdot.checks import Cost
     from softdot.differentiation import Derivative
 
@@ -70,33 +71,33 @@ class Case(PreparedPress):
 
     def over(self, segment: str) -> PreparedPress:
         """The press of an array by one dot over a segment, such as "r1c2". InputError."""
-        from softdot.arrays.case import ArrayCase
-
-        array = ArrayCase(self.config)
-        places = {place.label.removeprefix("segment-"): place for place in array.layout.places}
+        places = {place.label.removeprefix("segment-"): place for place in self._array.layout.places}
         if segment not in places:
             raise InputError(f"segment '{segment}': is none of {', '.join(places)}")
-        return array.press_over(places[segment])
+        return self._array.press_over(places[segment])
 
     def by_cell(self) -> PreparedPress:
         """The press of an array by all dots of dot.cell, dot 1 over r1c1. InputError."""
+        return self._array.press_by_cell()
+
+    @cached_property
+    def _array(self) -> "ArrayCase":
+        """The presses of an array that can be built. InputError, also where the configuration states no array."""
         from softdot.arrays.case import ArrayCase
 
-        return ArrayCase(self.config).press_by_cell()
+        found = ArrayCase(self.config)
+        _ = found.design_warnings
+        return found
 
     @property
     def warnings(self) -> list[str]:
         """Warnings before the solution, of an array about all its presses. InputError."""
-        from softdot.arrays.case import ArrayCase
-
-        return super().warnings if self.config.array is None else ArrayCase(self.config).warnings
+        return super().warnings if self.config.array is None else self._array.warnings
 
     @property
     def cost(self) -> "Cost":
         """Expected cost of a run, of an array that of its presses over each segment. InputError."""
-        from softdot.arrays.case import ArrayCase
-
-        return super().cost if self.config.array is None else ArrayCase(self.config).cost
+        return super().cost if self.config.array is None else self._array.cost
 
     @cached_property
     def sized_config(self) -> Config:

@@ -27,7 +27,7 @@ from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Segment
 from geometry.part_checks import covers_footprint
 from geometry.stack import layers
-from mesh.array.sizing import expected_elements
+from mesh.array.sizing import array_sizing, expected_elements
 from mesh.build import build
 from mesh.options import MeshOptions
 from mesh.outline import stack_outline
@@ -94,15 +94,15 @@ def expected_tetrahedra(
     """Rough number of elements of the soft layers: the mean of 6 sqrt 2 / h^3 over points in the stack.
 
     A slice is one layer of triangles of area sqrt 3 / 4 h^2, each of three tetrahedra. Of mesh.file their number is
-    counted. layout : of an array, whose mesher gives the number.
+    counted. layout : of an array, of which, unless it is of slices, the mesher gives the number.
     """
-    if layout is not None:
+    if layout is not None and not layout.is_slice:
         return expected_elements(layout, dot_shape, options, planes)
     if options.file is not None:
         return float(len(build(segment, dot_shape, options).tets))
     sliced = segment.section == "plane-strain"
     shape = stack_outline(segment, slice_mm=options.contact_element_size_mm) if sliced else stack_outline(segment)
-    field = sizing_field(shape, dot_shape, options)
+    field = sizing_field(shape, dot_shape, options) if layout is None else array_sizing(layout, dot_shape, options)
     high = np.array([shape.half_x, shape.half_y, shape.top])
     low = np.array([-shape.half_x, -shape.half_y, 0.0])
     low[list(planes)] = 0.0

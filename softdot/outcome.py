@@ -10,9 +10,10 @@ from softdot.case import Case
 from softdot.config.hashes import input_hash
 from softdot.config.schema import Config
 from softdot.json_files import plain
-from softdot.prepared_press import OnStep
+from softdot.prepared_press import OnStep, PreparedPress
 from softdot.pressed import Pressed
 from softdot.summary import mesh_part, press_part, stopped_solver
+from solve.result import PressResult
 
 
 def outcome(config: Config, on_step: OnStep | None = None) -> dict[str, Any]:
@@ -53,14 +54,22 @@ def _stored_name(config: Config) -> str:
 
 def solve_outcome(config: Config, on_step: OnStep | None = None) -> dict[str, Any]:
     """Check, mesh and press a configuration; its numbers alone. InputError for what cannot be built."""
-    case = Case(config)
-    numbers: dict[str, Any] = {"warnings": case.warnings}
+    return solve_with_fields(config, on_step)[0]
+
+
+def solve_with_fields(config: Config, on_step: OnStep | None = None) -> tuple[dict[str, Any], PressResult | None]:
+    """The numbers of a press, and the solver's own result, None without a mesh. InputError for what cannot be built.
+
+    An array is pressed by its dots where they stand; its presses are checked together (softdot.arrays.case).
+    """
+    case = Case(config) if config.array is None else PreparedPress(config)
+    numbers: dict[str, Any] = {"warnings": case.warnings if config.array is None else []}
     try:
         quality = case.mesh_quality
     except MeshingError as error:
-        return {**numbers, "solver": stopped_solver(f"meshing: {error}")}
+        return {**numbers, "solver": stopped_solver(f"meshing: {error}")}, None
     pressed = Pressed(case, case.solve(on_step))
     result = pressed.result
     numbers |= {"mesh": mesh_part(quality, result.unknowns), **press_part(case.model, result, pressed.course)}
     numbers["warnings"] += pressed.doubts
-    return dict(plain(numbers))
+    return dict(plain(numbers)), result

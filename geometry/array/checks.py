@@ -28,8 +28,10 @@ def check_array(layout: ArrayLayout) -> list[str]:
 
 def _check_segment(layout: ArrayLayout) -> None:
     segment = layout.segment
-    if segment.section != "solid":
-        raise InputError(f"segment.section = '{segment.section}': an array is 'solid', as it varies over y too")
+    if layout.is_slice and layout.array.rows > 1:
+        raise InputError(
+            f"array.rows = {layout.array.rows}: segment.section = 'plane-strain' has nothing that varies over y; must be 1"
+        )
     if segment.film.electrodes:
         raise InputError(
             "segment.film.electrodes: an array has one electrode on each segment; leave them out and give "

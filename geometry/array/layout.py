@@ -54,6 +54,11 @@ class ArrayLayout:
         return self.segment.length_mm, self.segment.width_mm
 
     @property
+    def is_slice(self) -> bool:
+        """Whether it is a row of plane-strain slices."""
+        return self.segment.section == "plane-strain"
+
+    @property
     def gap_mm(self) -> tuple[float, float]:
         """Smallest gap between neighbouring segments in x and y, in mm; infinite without neighbours."""
         nearest = np.diff(self.centres(0)).min(initial=np.inf), np.diff(self.centres(1)).min(initial=np.inf)

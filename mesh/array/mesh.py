@@ -2,8 +2,9 @@
 
 It is the extrusion of mesh.layered: the same bisection and the same split of prisms. Each triangle of the footprint
 lies either inside a layer or outside it. A dome is extruded too: its heights shrink to nothing at its rim, where the
-nodes of all heights are one, and prisms become pyramids and tetrahedra. A layer that is held at walls inside the array
-(by a stiff grid) has these walls among its facets side-<part>, as its sides at the rim.
+nodes of all heights are one, and prisms become pyramids and tetrahedra. A row of plane-strain slices is the extrusion
+of its section, as mesh.slice has it. A layer that is held at walls inside the array (by a stiff grid) has these walls
+among its facets side-<part>, as its sides at the rim.
 """
 
 from dataclasses import dataclass
@@ -15,13 +16,15 @@ from geometry.array.layout import ArrayLayout
 from geometry.dot import DotShape
 from geometry.stack import layers
 from mesh.array.footprint import distance_to_nearest_middle, footprint_triangulation, on_or_beyond_circles
-from mesh.array.sizing import array_sizing
+from mesh.array.sizing import ArraySizing, array_sizing
 from mesh.bisection import Triangulation
 from mesh.layered import layer_heights
 from mesh.options import MeshOptions
-from mesh.outline import RoundSurface, curved_surface, stack_outline
+from mesh.outline import RoundSurface, StackOutline, curved_surface, stack_outline
 from mesh.quadratic import facets_between_parts, quadratic_nodes_and_tets
 from mesh.quality import refuse_inverted
+from mesh.section import MeshedSection, structured_section
+from mesh.slice import extrude_section, node_twins
 from mesh.types import (
     TET_FACES,
     LinearMesh,
@@ -75,12 +78,15 @@ def array_mesh(layout: ArrayLayout, dot: DotShape, options: MeshOptions, planes:
         layer.top_mm - groove.depth_mm for layer in layers(layout.segment) for groove in layout.grooves(layer.name)
     ]
     heights, layer_region, names = layer_heights(field.outline, field, options.film_layers, grooves)
-    linear = _extrude(layout, footprint_triangulation(layout, field), heights, layer_region, names)
+    thickness_mm = 2.0 * field.outline.half_y
+    if layout.is_slice:
+        linear = extrude_section(_section(layout, field, heights, layer_region, names), thickness_mm)
+    else:
+        linear = _extrude(layout, footprint_triangulation(layout, field), heights, layer_region, names)
     points, tets = quadratic_nodes_and_tets(linear, _round_surfaces(layout))
-    facets = _facets(layout, points, tets, linear.region, linear.region_names, planes)
-    twin = np.arange(len(points), dtype=np.int64)
-    thickness = layout.whole.width_mm
-    result = TetMesh(points, tets, linear.region, linear.region_names, facets, twin, thickness, planes)
+    facets = _facets(layout, points, tets, linear.region, linear.region_names, field.outline)
+    twin = node_twins(points) if layout.is_slice else np.arange(len(points), dtype=np.int64)
+    result = TetMesh(points, tets, linear.region, linear.region_names, facets, twin, thickness_mm, planes)
     refuse_inverted(result)
     return result
 
@@ -88,6 +94,17 @@ def array_mesh(layout: ArrayLayout, dot: DotShape, options: MeshOptions, planes:
 def _round_surfaces(layout: ArrayLayout) -> RoundSurfaces | None:
     one = curved_surface(stack_outline(layout.segment))
     return None if one is None else RoundSurfaces(one, layout.middles)
+
+
+def _section(
+    layout: ArrayLayout, field: ArraySizing, heights: Floats, layer_region: Ints, names: tuple[str, ...]
+) -> MeshedSection:
+    """The section of a row of slices."""
+
+    def holds(layer: str, x: Floats, height: float) -> Bools:
+        return layout.holds(layer, np.column_stack([x, np.zeros_like(x)]), height)
+
+    return structured_section(field, heights, layer_region, names, layout.lines(0).tolist(), holds)
 
 
 def _extrude(
@@ -133,7 +150,7 @@ def _nodes(
 
 
 def _facets(
-    layout: ArrayLayout, points: Floats, tets: Ints, region: Ints, names: tuple[str, ...], planes: Planes
+    layout: ArrayLayout, points: Floats, tets: Ints, region: Ints, names: tuple[str, ...], outline: StackOutline
 ) -> dict[str, Ints]:
     """Facets of the mesh by name, as in mesh.types.TetMesh.
 
@@ -145,14 +162,15 @@ def _facets(
     corner = points[outer[:, :3]]
     flat = np.ptp(corner[..., 2], axis=1) < PLANE_TOLERANCE_MM
     on_base = flat & (np.abs(corner[..., 2]).max(axis=1) < PLANE_TOLERANCE_MM)
-    cut = np.zeros(len(outer), dtype=bool)
-    for axis in planes:
+    faces_of_slice = (np.abs(np.abs(corner[..., 1]) - outline.half_y) < PLANE_TOLERANCE_MM).all(axis=1)
+    cut = faces_of_slice & layout.is_slice
+    for axis in outline.planes:
         cut |= (np.abs(corner[..., axis]) < PLANE_TOLERANCE_MM).all(axis=1)
     result = {"contact": outer[_touchable(layout, corner, part, names, flat) & ~cut], "base": outer[on_base]}
     at_rim = _on_rim_planes(corner, layout.half_mm)
     for number, name in enumerate(names):
-        held = ~flat & ~cut if name in layout.array.grid_layers else at_rim
-        mine = outer[held & (part == number)]
+        held = ~flat if name in layout.array.grid_layers else at_rim
+        mine = outer[held & ~cut & (part == number)]
         if len(mine):
             result[f"side-{name}"] = mine
     neighbour, film = face_neighbours(tets[:, :4]), names.index("film")

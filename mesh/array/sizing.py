@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from foundation.arrays import Floats
-from geometry.array.layout import ArrayLayout, Rectangle
+from geometry.array.layout import ArrayLayout
 from geometry.dot import DotShape
 from mesh.options import MeshOptions
 from mesh.outline import stack_outline
-from mesh.sizing import RIM_SIZE_GROWTH, RIM_SIZE_SHARE, SIZE_GROWTH, Sizing, sizing_field
+from mesh.sizing import SIZE_GROWTH, Sizing, sizing_field
 from mesh.types import Planes
 
 HYPOTENUSE_PER_MEAN_EDGE = 1.6
@@ -39,7 +39,7 @@ class ArraySizing(Sizing):
         beside = FAR_GROWTH * _distance_outside(points, self.pressed).min(axis=1)
         film = self.film_mm + SIZE_GROWTH * to_film + beside
         to_end = np.abs(_distance_inside(points, self.ends)).min(axis=1)
-        rim = RIM_SIZE_SHARE * self.film_mm + RIM_SIZE_GROWTH * np.hypot(to_film, to_end) + beside
+        rim = self._rim_size(np.hypot(to_film, to_end)) + beside
         contact = self.contact_mm + SIZE_GROWTH * self._distance_to_contact(points)
         return np.asarray(np.minimum(np.minimum(np.minimum(contact, film), rim), self.coarse_mm))
 
@@ -64,14 +64,16 @@ def _distance_outside(points: Floats, rectangles: Floats) -> Floats:
     return np.asarray(np.hypot(*beside), dtype=np.float64)
 
 
-def array_sizing(layout: ArrayLayout, dot: DotShape, options: MeshOptions, planes: Planes) -> ArraySizing:
+def array_sizing(layout: ArrayLayout, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> ArraySizing:
     """The sizing field of an array under a dot at rest; it presses the segments within its reach."""
     half_x, half_y = layout.half_mm
-    base = sizing_field(stack_outline(layout.whole, planes=planes), dot, options)
-    segments = np.array(layout.rectangles("film"))
+    outline = stack_outline(layout.whole, slice_mm=options.contact_element_size_mm, planes=planes)
+    base = sizing_field(outline, dot, options)
+    segments, rim = np.array(layout.rectangles("film")), np.array([(-half_x, half_x, -half_y, half_y)])
+    if layout.is_slice:  # which has no end in y
+        segments[:, 2:] = rim[:, 2:] = -np.inf, np.inf
     near = (_distance_outside(base.centers_mm, segments) <= base.reach_mm).any(axis=0)
-    rim: list[Rectangle] = [(-half_x, half_x, -half_y, half_y)]
-    ends = segments if layout.ends_at_walls("film") else np.array(rim)
+    ends = segments if layout.ends_at_walls("film") else rim
     return ArraySizing(**vars(base), pressed=segments[near] if near.any() else segments, ends=ends)
 
 

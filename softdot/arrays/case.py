@@ -75,8 +75,10 @@ class ArrayCase:
     def _refuse_keys_of_one_segment(self) -> None:
         """InputError for keys that an array does not take."""
         config = self.config
-        if config.dot.shape != "cap":
+        if config.dot.shape != "cap" and not self.layout.is_slice:
             raise InputError(f"dot.shape = '{config.dot.shape}': an array is pressed by round dots, 'cap'")
+        if config.dot.shape != "ridge" and self.layout.is_slice:
+            raise InputError(f"dot.shape = '{config.dot.shape}': a row of slices is pressed by a 'ridge'")
         if config.press.path_xy_mm:
             raise InputError("press.path_xy_mm: softdot array presses each segment in turn; leave the slide out")
         if config.mesh.file is not None:
@@ -90,6 +92,10 @@ class ArrayCase:
     def refuse_kernel(self) -> None:
         """InputError for an array of which a kernel, a table over depth without time, cannot be made."""
         dot, force = self.config.dot, self.config.press.force_N
+        if self.layout.is_slice:
+            raise InputError(
+                "segment.section = 'plane-strain': a kernel is of dots anywhere in x and y; it needs 'solid'"
+            )
         if self.config.press.indentation_mm is None:
             raise InputError(
                 f"press.force_N = {force}: a kernel is a table over depth; give press.indentation_mm instead"

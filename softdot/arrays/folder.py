@@ -40,7 +40,7 @@ def run_array(
 
     Presses are done by processes of this computer, or on the Dask cluster of a scheduler (tcp://HOST:PORT).
     InputError before any work for what cannot be built or written. Where a press does not converge, StoppedPressError
-    or MeshingError: nothing is written, and presses that were solved are kept in the cache.
+    or, of a kernel, MeshingError: nothing is written, and presses that were solved are kept in the cache.
     """
     from export.rendering import ensure_rendering
     from softdot.arrays.case import ArrayCase
@@ -74,7 +74,8 @@ def _summary(config: Config, found: ArrayStudy, warnings: list[str]) -> dict[str
 
     matrix, layout = found.matrix, found.matrix.layout
     presses = matrix.solved.values()
-    late = [text for press in presses for text in press.warnings]
+    late = [text for press in presses for text in press.outcome["warnings"]]
+    solvers = [press.outcome["solver"] for press in presses]
     return {
         "format": ARRAY.format,
         "softdot_version": installed_version(),
@@ -95,9 +96,9 @@ def _summary(config: Config, found: ArrayStudy, warnings: list[str]) -> dict[str
         "kernel_checks": [vars(one) for one in found.checks],
         "solver": {
             "presses": len(matrix.solved),
-            "unknowns": max(press.unknowns for press in presses),
-            "newton_iterations": sum(press.newton_iterations for press in presses),
-            "max_relative_residual": max(press.max_relative_residual for press in presses),
+            "unknowns": max(press.outcome["mesh"]["unknowns"] for press in presses),
+            "newton_iterations": sum(one["newton_iterations"] for one in solvers),
+            "max_relative_residual": max(one["max_relative_residual"] for one in solvers),
             "solve_s": [press.solve_s for press in presses],
         },
         "warnings": list(dict.fromkeys([*warnings, *late])),

@@ -73,7 +73,7 @@ class ArrayStudy:
 def study(case: ArrayCase, executor: Executor, progress: Progress, parts: frozenset[Part]) -> ArrayStudy:
     """Solve everything by an executor; parts : what is asked for beside the matrix.
 
-    StoppedPressError where a press does not converge, InputError, MeshingError.
+    StoppedPressError where a press does not converge, InputError; of a kernel MeshingError too.
     """
     place = case.layout.places[next(iter(representatives(case.layout).values()))]
     by_cell = case.config.dot.cell is not None

@@ -83,7 +83,7 @@ REFUSED = {
         {"width_mm": 2.49},
         r"segment.width_mm = 2.49: .*along y.*medium1, which is held by the grid",
     ),
-    "slice": (Array(), {"section": "plane-strain"}, r"segment.section = 'plane-strain': an array is 'solid'"),
+    "rows of slices": (Array(), {"section": "plane-strain"}, r"array.rows = 3: .*'plane-strain'.*; must be 1"),
     "electrodes": (
         Array(),
         {"film": Film(thickness_um=28.0, electrodes=(Electrode(name="a", size_mm=(1.0, 1.0)),))},

@@ -1,7 +1,5 @@
 """Which presses of an array are solved, and how the others follow from them."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -9,24 +7,23 @@ from foundation.errors import InputError
 from softdot.arrays import presses as presses_module
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.matrix import CrosstalkMatrix, crosstalk
-from softdot.arrays.presses import ArrayPresses, Signals, StoppedPressError, signals
+from softdot.arrays.presses import ArrayPresses, Signals, StoppedPressError
 from softdot.arrays.side_stiffness import representatives, role
 from softdot.case import Case
 from softdot.config.model import model_of
 from softdot.prepared_press import PreparedPress
+from softdot.summary import stopped_solver
 from tests.cases import for_each
 from tests.verification.array_cases import array
 
 
-def made_up(charges_pC, failure=None) -> Signals:
+def made_up(charges_pC) -> Signals:
     """A press of one step whose charges are given."""
-    charge = np.array([np.zeros(len(charges_pC)), charges_pC], dtype=float)
-    numbers = {"depth_mm": np.array([0.0, 0.2]), "force_N": np.array([0.0, 0.1]), "readout_voltage_V": None}
-    about = {"unknowns": 1, "newton_iterations": 1, "max_relative_residual": 0.0, "solve_s": 0.0}
-    return Signals(
-        charge_pC=charge, voltage_V=0.05 * charge, capacitance_pF=np.full(len(charges_pC), 20.0),
-        warnings=(), failure=failure, **numbers, **about,
-    )  # fmt: skip
+    electrodes = [
+        {"film_charge_pC": [0.0, charge], "open_circuit_voltage_V": [0.0, 0.05 * charge], "capacitance_pF": 20.0}
+        for charge in charges_pC
+    ]
+    return Signals({"indentation_mm": [0.0, 0.2], "reaction_force_N": [0.0, 0.1], "electrodes": electrodes})
 
 
 def test_mirror_images_are_not_solved_again():
@@ -89,8 +86,8 @@ def test_a_solved_press_is_kept(monkeypatch, tmp_path):
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
     case = array(press={"load_steps": 1}, electrode_margin_mm=0.2)
     press = case.press_over(case.layout.places[0])
-    first = signals(press)
-    assert first.failure is None
+    (first,) = ArrayPresses()({"a press": press}).values()
+    assert first.solve_s > 0.0
     np.testing.assert_allclose(case.capacitance_pF, first.capacitance_pF)  # eps A / t of what the margin leaves
 
     pressed = press.press()  # on the mesh that is there
@@ -102,25 +99,28 @@ def test_a_solved_press_is_kept(monkeypatch, tmp_path):
         raise AssertionError("solved again")
 
     monkeypatch.setattr(PreparedPress, "solve", never)
-    again = signals(press)
-    for name, value in vars(first).items():
-        np.testing.assert_array_equal(getattr(again, name), value)
+    (again,) = ArrayPresses()({"a press": press}).values()
+    assert again.outcome == first.outcome
     other = array(press={"load_steps": 1}, electrode_margin_mm=0.1)
     with pytest.raises(AssertionError, match="solved again"):
-        signals(other.press_over(other.layout.places[0]))
+        ArrayPresses()({"another": other.press_over(other.layout.places[0])})
 
 
 def test_a_press_that_stops_is_told_by_its_segment(monkeypatch, tmp_path):
     """Nothing is made of the others."""
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
-    stopped = replace(made_up([1.0, 1.0]), failure="step 1 of 2 stopped")
-    monkeypatch.setattr(presses_module, "solve_signals", lambda _config: stopped)
+    stopped = {"solver": stopped_solver("step 1 of 2 stopped")}
+    monkeypatch.setattr(presses_module, "outcome", lambda _config: stopped)
     with pytest.raises(StoppedPressError, match="the press of segment-r1c1 did not converge: step 1 of 2 stopped"):
         crosstalk(array(), ArrayPresses())
 
 
 REFUSED = {
     "ridge": ({"dot": {"shape": "ridge"}}, "dot.shape = 'ridge': an array is pressed by round dots"),
+    "a cap over slices": (
+        {"segment": {"section": "plane-strain"}},
+        "dot.shape = 'cap': a row of slices is pressed by a 'ridge'",
+    ),
     "slide": ({"press": {"path_xy_mm": [[1.0, 0.0]]}}, "press.path_xy_mm: softdot array presses each segment in turn"),
     "accuracy": ({"mesh": {"accuracy_percent": 1.0}}, "mesh.accuracy_percent = 1: an array takes element sizes"),
     "too fine": ({"mesh": {"contact_element_size_mm": 0.004}}, "mesh.contact_element_size_mm = 0.004: means about"),
@@ -138,8 +138,8 @@ REFUSED = {
 @for_each("name", REFUSED)
 def test_what_an_array_does_not_take_is_refused_by_name(name):
     changes, sentence = REFUSED[name]
-    tables = {key: value for key, value in changes.items() if key not in ("press", "mesh")}
-    case = array(press=changes.get("press"), mesh=changes.get("mesh"), tables=tables)
+    tables = {key: value for key, value in changes.items() if key not in ("press", "mesh", "segment")}
+    case = array(**{key: changes.get(key) for key in ("press", "mesh", "segment")}, tables=tables)
     with pytest.raises(InputError) as refusal:
         _ = case.warnings
     assert str(refusal.value).startswith(sentence)
