@@ -4,11 +4,7 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-
-SAFE_PATH_VARIABLE = "PYTHONSAFEPATH"
 
 
 def python_command(*arguments: str) -> list[str]:
@@ -21,19 +17,6 @@ def child_python_path() -> dict[str, str]:
     program = str(Path(__file__).resolve().parents[1])
     folders = [folder for folder in sys.path if folder]
     return {"PYTHONPATH": os.pathsep.join([*folders, *({program} - set(folders))])}
-
-
-@contextmanager
-def without_working_folder() -> Iterator[None]:
-    """Keep Python processes that libraries start inside this block from looking for modules in the working folder."""
-    before = os.environ.get(SAFE_PATH_VARIABLE)
-    os.environ[SAFE_PATH_VARIABLE] = "1"
-    try:
-        yield
-    finally:
-        os.environ.pop(SAFE_PATH_VARIABLE)
-        if before is not None:
-            os.environ[SAFE_PATH_VARIABLE] = before
 
 
 PARENT_CHECK_S = 1.0

@@ -11,6 +11,7 @@ import sys
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from threading import Event, Timer
 from typing import IO, Any, Self
@@ -18,6 +19,9 @@ from typing import IO, Any, Self
 from foundation.child_processes import child_python_path, end_with_parent, python_command
 from foundation.scratch_folders import sweep_scratch
 
+Tell = Callable[[Any], None]
+DONE, RAISED, TOLD = "done", "raised", "told"
+"""Kinds of what a worker sends: the result of a call, an error, or a message of a call on its way."""
 OOM_SCORE_FILE = Path("/proc/self/oom_score_adj")
 LONGEST_END_S = 5.0
 
@@ -49,6 +53,15 @@ class WorkerProcess:
         return self
 
     def __exit__(self, *_: object) -> None:
+        self.end()
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether it can do another call."""
+        return self._process.poll() is None
+
+    def end(self) -> None:
+        """End the process at once, with what it has started, and give up the calls that are not done."""
         self._over.set()
         self.kill()
         self._pool.shutdown(cancel_futures=True)
@@ -76,22 +89,30 @@ class WorkerProcess:
         except ProcessDiedError:
             return None if self._over.is_set() else function(*arguments)
 
-    def call(self, function: Callable[..., Any], *arguments: Any) -> Any:
+    def begin(self, function: Callable[..., Any], *arguments: Any, tell: Tell | None = None) -> "Future[Any]":
+        """Return the future of a call, which raises ProcessDiedError where the worker ends before. See call."""
+        return self._pool.submit(self.call, function, *arguments, tell=tell)
+
+    def call(self, function: Callable[..., Any], *arguments: Any, tell: Tell | None = None) -> Any:
         """Do a call in the worker and return what the function returns, or raise what it raises.
 
-        ProcessDiedError where the worker ends before. Only one thread may call at a time.
+        tell : given to the function by this name where it is stated; what the function calls it with, it is called with
+        here. ProcessDiedError where the worker ends before. Only one thread may call at a time.
         """
         asked, answered = self._process.stdin, self._process.stdout
         assert asked is not None
         assert answered is not None
-        call = pickle.dumps((function, arguments))
+        call = pickle.dumps((function, arguments, tell is not None))
         try:
             asked.write(call)
             asked.flush()
-            done, value = pickle.load(answered)
+            kind, value = pickle.load(answered)
+            while kind == TOLD and tell is not None:
+                tell(value)
+                kind, value = pickle.load(answered)
         except (OSError, ValueError, EOFError, pickle.UnpicklingError):
             raise ProcessDiedError from None
-        if not done:
+        if kind == RAISED:
             raise value
         return value
 
@@ -122,17 +143,20 @@ def serve_calls() -> None:
         OOM_SCORE_FILE.write_text("500", "ascii")
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+
+    def send(kind: str, value: Any) -> None:
+        answers.write(pickle.dumps((kind, value)))
+        answers.flush()
+
     while True:
         try:
-            function, arguments = pickle.load(sys.stdin.buffer)
+            function, arguments, is_told = pickle.load(sys.stdin.buffer)
         except EOFError:
             return
         try:
-            answer = pickle.dumps((True, function(*arguments)))
+            send(DONE, function(*arguments, **({"tell": partial(send, TOLD)} if is_told else {})))
         except Exception as error:
-            answer = pickle.dumps((False, picklable_error(error)))
-        answers.write(answer)
-        answers.flush()
+            send(RAISED, picklable_error(error))
 
 
 def picklable_error(error: Exception) -> Exception:

@@ -30,7 +30,8 @@ def _check_segment(layout: ArrayLayout) -> None:
     segment = layout.segment
     if layout.is_slice and layout.array.rows > 1:
         raise InputError(
-            f"array.rows = {layout.array.rows}: segment.section = 'plane-strain' has nothing that varies over y; must be 1"
+            f"array.rows = {layout.array.rows}: segment.section = 'plane-strain' has nothing that varies over y; must "
+            "be 1"
         )
     if segment.film.electrodes:
         raise InputError(

@@ -56,7 +56,7 @@ class ArrayPresses:
         self._known: dict[str, Signals] = {}
 
     def __call__(self, presses: Mapping[str, PreparedPress]) -> dict[str, Signals]:
-        """Signals of each press by its name. StoppedPressError where one did not converge or has no mesh, InputError."""
+        """Signals of each press by its name. StoppedPressError where one stopped or has no mesh, InputError."""
         keys = {name: outcome_key(press.config) for name, press in presses.items()}
         for name, key in keys.items():
             if key not in self._known and (stored := stored_outcome(presses[name].config)) is not None:

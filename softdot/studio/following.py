@@ -6,9 +6,10 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
+from foundation.worker_process import ProcessDiedError
 from softdot.studio.comparison import differences
 from softdot.studio.document import Document
-from softdot.studio.processes import InTurn, Pool, ProcessLost, TaskRefused
+from softdot.studio.processes import InTurn, Pool, TaskRefused
 
 PAUSE_S, REST_S = 0.15, 0.2
 """A hand that has changed nothing for so long pauses, and the design is checked; then it rests, and it is pressed."""
@@ -84,7 +85,7 @@ class Follower:
         while True:
             await self._undrawn.wait()
             self._undrawn.clear()
-            with suppress(TaskRefused, ProcessLost, TimeoutError):
+            with suppress(TaskRefused, ProcessDiedError, TimeoutError):
                 parts = await self._quick(self._draw_process, "design:draw", self._document.text)
                 if parts is not None:
                     self._tell("parts", again=True, view=parts)
@@ -94,7 +95,7 @@ class Follower:
         while True:
             await self._unchecked.wait()
             self._unchecked.clear()
-            with suppress(TaskRefused, ProcessLost, TimeoutError):
+            with suppress(TaskRefused, ProcessDiedError, TimeoutError):
                 await self._look(self._document.text)
 
     async def _look(self, text: str) -> None:
@@ -128,7 +129,7 @@ class Follower:
         except TimeoutError:
             self._tell("said", text="this design takes too long to check: its numbers are absurd", bad=True)
             raise
-        except ProcessLost:
+        except ProcessDiedError:
             self._tell("said", text="the process that checks designs ended and was started again", bad=True)
             raise
         except TaskRefused as refused:
@@ -164,14 +165,14 @@ class Follower:
                     self._show_array(found, curve["press_hash"])
                     continue
                 self._show(found, curve)
-                with suppress(ProcessLost, TimeoutError):
+                with suppress(ProcessDiedError, TimeoutError):
                     await self._answer_circuit(self._document.text)
             self._tell("ended", task="press")
         except asyncio.CancelledError:
             self._tell("ended", task="press", said="cancelled")
             raise
-        except (TaskRefused, ProcessLost) as error:  # not again by itself
-            lost = isinstance(error, ProcessLost)
+        except (TaskRefused, ProcessDiedError) as error:  # not again by itself
+            lost = isinstance(error, ProcessDiedError)
             said = "the process of the press ended; the design is as it was" if lost else str(error)
             self._tell("ended", task="press", said=said, bad=True)
 

@@ -8,25 +8,19 @@ process: a library in the middle of a factorisation asks nobody.
 
 import asyncio
 import logging
-import multiprocessing
-import os
-import signal
-import sys
-import threading
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from functools import partial
 from importlib import import_module
 from inspect import signature
-from multiprocessing.connection import Connection
 from typing import Any
 
-from foundation.child_processes import end_with_parent, without_working_folder
 from foundation.errors import InputError
 from foundation.library_loading import without_garbage_collection
+from foundation.worker_process import Tell, WorkerProcess
 
 LOG = logging.getLogger(__name__)
 WORK = "softdot.studio.work"
-Tell = Callable[[dict[str, Any]], None]
 WAITING, MOST_WAITING = 1, 2
 """Processes that wait with everything loaded, so that a press after a cancelled one begins at once."""
 
@@ -35,66 +29,22 @@ class TaskRefused(Exception):
     """Bad input, or a computation that has no result: one sentence for the page."""
 
 
-class ProcessLost(Exception):
-    """The process of a task ended by itself."""
-
-
-class Worker:
+class Worker(WorkerProcess):
     """One process. Created in the thread of the event loop, which alone calls it."""
 
     def __init__(self, warm_up: str) -> None:
         """warm_up : done before the first task, so that that is quick."""
-        context = multiprocessing.get_context("spawn")
-        self._connection, theirs = context.Pipe()
-        self.process = context.Process(target=serve_tasks, args=(theirs, os.getpid(), warm_up), daemon=True)
-        with _deaf(), without_working_folder():
-            self.process.start()
-        theirs.close()
-        self._loop = asyncio.get_running_loop()
-        self._answer: asyncio.Future[Any] | None = None
-        self._tell: Tell = lambda _: None
-        threading.Thread(target=self._listen, daemon=True).start()
+        super().__init__()
+        self.begin(load, warm_up)
 
     async def run(self, task: str, *arguments: Any, tell: Tell = lambda _: None) -> Any:
-        """What the task returns. TaskRefused, ProcessLost; where the waiting is cancelled, the process ends."""
-        self._answer, self._tell = self._loop.create_future(), tell
+        """What the task returns. TaskRefused, ProcessDiedError; where the waiting is cancelled, the process ends."""
+        told = partial(asyncio.get_running_loop().call_soon_threadsafe, tell)
         try:
-            self._connection.send((task, arguments))
-            return await self._answer
-        except OSError:
-            raise ProcessLost from None
+            return await asyncio.wrap_future(self.begin(do_task, task, arguments, tell=told))
         except asyncio.CancelledError:
             self.end()
             raise
-
-    @property
-    def alive(self) -> bool:
-        """Whether it can do another task."""
-        return self.process.is_alive()
-
-    def end(self) -> None:
-        """At once; what it has started ends with it."""
-        self.process.kill()
-        self.process.join()
-        self._connection.close()
-
-    def _listen(self) -> None:
-        """In a thread: pass on what the process says until it ends."""
-        with suppress(OSError, EOFError, RuntimeError):
-            while True:
-                kind, value = self._connection.recv()
-                self._loop.call_soon_threadsafe(self._heard, kind, value)
-        with suppress(RuntimeError):  # the loop is closed
-            self._loop.call_soon_threadsafe(self._heard, "lost", None)
-
-    def _heard(self, kind: str, value: Any) -> None:
-        if kind == "told":
-            self._tell(value)
-        elif self._answer is not None and not self._answer.done():
-            if kind == "done":
-                self._answer.set_result(value)
-            else:
-                self._answer.set_exception(TaskRefused(value) if kind == "refused" else ProcessLost())
 
 
 class InTurn:
@@ -107,7 +57,7 @@ class InTurn:
 
     def prepare(self) -> None:
         """Start the process."""
-        if self._worker is None or not self._worker.alive:
+        if self._worker is None or not self._worker.is_alive:
             self._worker = Worker(self._warm_up)
 
     async def run(self, task: str, *arguments: Any) -> Any:
@@ -138,7 +88,7 @@ class Pool:
 
     def prepare(self) -> None:
         """Start a process that waits for a task, where there is none."""
-        self._idle = [worker for worker in self._idle if worker.alive]
+        self._idle = [worker for worker in self._idle if worker.is_alive]
         while len(self._idle) < WAITING:
             self._idle.append(Worker(self._warm_up))
 
@@ -152,7 +102,7 @@ class Pool:
             return await worker.run(task, *arguments, tell=tell)
         finally:
             self._busy.remove(worker)
-            if worker.alive and len(self._idle) < MOST_WAITING:
+            if worker.is_alive and len(self._idle) < MOST_WAITING:
                 self._idle.append(worker)
             else:
                 worker.end()
@@ -163,29 +113,10 @@ class Pool:
             worker.end()
 
 
-@contextmanager
-def _deaf() -> Iterator[None]:
-    """Processes that are started in this block do not hear Ctrl-C in the terminal: who started them ends them."""
-    if not hasattr(signal, "pthread_sigmask"):  # Windows
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def serve_tasks(connection: Connection, parent: int, warm_up: str) -> None:
-    """In the process: do one task after another until the other end is gone."""
-    end_with_parent(parent)
-    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what libraries print is no answer
+def load(warm_up: str) -> None:
+    """In the process: load what its tasks need."""
     with without_garbage_collection(), suppress(Exception):
         named(warm_up)()
-    with suppress(EOFError, OSError):
-        while True:
-            task, arguments = connection.recv()
-            connection.send(_outcome(task, arguments, lambda told: connection.send(("told", told))))
 
 
 def named(task: str) -> Callable[..., Any]:
@@ -195,8 +126,8 @@ def named(task: str) -> Callable[..., Any]:
     return found
 
 
-def _outcome(task: str, arguments: Sequence[Any], tell: Tell) -> tuple[str, Any]:
-    """The kind of answer and its content; what went wrong is one sentence, and its traceback a line of the log."""
+def do_task(task: str, arguments: Sequence[Any], tell: Tell) -> Any:
+    """In the process: do a task. TaskRefused with one sentence, and the traceback of a mistake of ours in the log."""
     from mesh.types import MeshingError
     from softdot.arrays.presses import StoppedPressError
     from softdot.no_room import no_room_sentence
@@ -207,14 +138,15 @@ def _outcome(task: str, arguments: Sequence[Any], tell: Tell) -> tuple[str, Any]
     try:
         function = named(task)
         told = {"tell": tell} if "tell" in signature(function).parameters else {}
-        return "done", function(*arguments, **told)
+        return function(*arguments, **told)
     except InputError as error:
-        return "refused", str(error)
+        raise TaskRefused(str(error)) from None
     except MeshingError as error:
-        return "refused", f"the mesher failed: {error}"
+        raise TaskRefused(f"the mesher failed: {error}") from None
     except (LinearSolveError, NoEquilibriumError, StoppedPressError, StoppedShortError) as error:
-        return "refused", f"not converged: {error}"
+        raise TaskRefused(f"not converged: {error}") from None
     except Exception as error:
         LOG.debug("%s failed", task, exc_info=True)
         said = no_room_sentence(error)
-        return "refused", said[0] if said else f"this failed inside softdot ({type(error).__name__}): please report it"
+        ours = f"this failed inside softdot ({type(error).__name__}): please report it"
+        raise TaskRefused(said[0] if said else ours) from None

@@ -10,11 +10,12 @@ from pathlib import Path
 from typing import Any
 
 from foundation.errors import InputError
+from foundation.worker_process import ProcessDiedError
 from softdot.studio.autosave import Autosave
 from softdot.studio.comparison import compared
 from softdot.studio.document import Document
 from softdot.studio.following import Follower, Json
-from softdot.studio.processes import InTurn, Pool, ProcessLost, TaskRefused
+from softdot.studio.processes import InTurn, Pool, TaskRefused
 
 MOST_KEPT = 4
 ON_DESIGN = {"influences": "influences:influences", "tolerances": "influences:tolerances_of_making"}
@@ -254,8 +255,8 @@ class Session:
         except asyncio.CancelledError:
             self.tell("ended", task=task, said="cancelled")
             raise
-        except (TaskRefused, ProcessLost) as error:
-            lost = isinstance(error, ProcessLost)
+        except (TaskRefused, ProcessDiedError) as error:
+            lost = isinstance(error, ProcessDiedError)
             said = "its process ended before it was done; the design is as it was" if lost else str(error)
             self.tell("ended", task=task, said=said, bad=True)
 

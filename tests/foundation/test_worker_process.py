@@ -6,7 +6,7 @@ import time
 import pytest
 
 from foundation.errors import InputError
-from foundation.worker_process import WorkerProcess
+from foundation.worker_process import ProcessDiedError, WorkerProcess
 
 
 def refused(text):
@@ -62,3 +62,22 @@ def test_an_inner_block_may_end_it():
         with ask:
             other = ask(os.getpid).result()
         assert not exists(other)
+
+
+def tells(count, tell):
+    for number in range(count):
+        tell(number)
+    return "done"
+
+
+def test_what_a_call_tells_on_its_way_is_heard_in_order_and_one_that_is_killed_is_told():
+    heard = []
+    with WorkerProcess() as process:
+        assert process.begin(tells, 3, tell=heard.append).result() == "done"
+        assert heard == [0, 1, 2]
+        assert process.is_alive
+        slow = process.begin(time.sleep, 60.0)
+        process.kill()
+        with pytest.raises(ProcessDiedError):
+            slow.result(timeout=20.0)
+        assert not process.is_alive

@@ -33,7 +33,9 @@ def children(number: int) -> list[int]:
 
 
 def workers(number: int) -> list[int]:
-    return [one for one in children(number) if b"spawn_main" in Path(f"/proc/{one}/cmdline").read_bytes()]
+    return [
+        one for one in children(number) if b"foundation.worker_process" in Path(f"/proc/{one}/cmdline").read_bytes()
+    ]
 
 
 def runs(number: int) -> bool:

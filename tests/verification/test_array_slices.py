@@ -38,7 +38,9 @@ def test_a_row_of_one_slice_is_the_slice():
     lone = Case(one.config.model_copy(update={
         "array": None, "mesh": one.config.mesh.model_copy(update={"mesher": "layered"})
     }))  # fmt: skip
-    (force, charge), (lone_force, lone_charge) = (numbers(each) for each in (one.press_over(one.layout.places[0]), lone))
+    (force, charge), (lone_force, lone_charge) = (
+        numbers(each) for each in (one.press_over(one.layout.places[0]), lone)
+    )
     assert force == pytest.approx(lone_force, rel=1e-9)
     np.testing.assert_allclose(charge, lone_charge, rtol=1e-9)
     assert one.capacitance_pF[0] == pytest.approx(lone.press().film_capacitance_pF, rel=1e-9)
@@ -104,5 +106,5 @@ def test_the_mesh_of_a_row_has_the_area_of_each_part(name):
 def test_what_slices_cannot_have_is_refused():
     with pytest.raises(InputError, match=r"array.rows = 2: segment.section = 'plane-strain'.*; must be 1"):
         Case(row(2).config.model_copy(update={"array": Array(columns=2, rows=2)})).over("r1c1")
-    with pytest.raises(InputError, match="segment.section = 'plane-strain': a kernel is of dots anywhere"):
+    with pytest.raises(InputError, match=r"segment.section = 'plane-strain': a kernel is of dots anywhere"):
         row(2).refuse_kernel()

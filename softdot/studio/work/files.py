@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any, get_args
 
 from foundation.errors import InputError
+from foundation.worker_process import Tell
 from softdot.config.schema import Config
-from softdot.studio.processes import Tell
 from softdot.studio.work.design import case_of, config_of
 from softdot.studio.work.press import TaskProgress
 

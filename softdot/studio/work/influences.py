@@ -3,10 +3,10 @@
 from typing import Any
 
 from foundation.errors import InputError
+from foundation.worker_process import Tell
 from softdot.case import Case
 from softdot.config.schema import Config
 from softdot.json_files import plain
-from softdot.studio.processes import Tell
 from softdot.studio.work.design import case_of
 from softdot.studio.work.press import COARSE, TaskProgress
 from softdot.tolerances.budget import tolerance_budget

@@ -8,12 +8,12 @@ from typing import Any
 
 from export.viewer_data import viewer_data
 from foundation.errors import InputError
+from foundation.worker_process import Tell
 from mesh.types import MeshingError
 from softdot.case import Case
 from softdot.json_files import plain
 from softdot.prepared_press import PreparedPress
 from softdot.pressed import Pressed
-from softdot.studio.processes import Tell
 from softdot.studio.work.design import case_of, config_of, pressed_part
 from softdot.studio.work.remedies import late_remedies
 from softdot.summary import mesh_part, press_part

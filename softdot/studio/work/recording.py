@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from foundation.worker_process import Tell
 from softdot.json_files import plain
-from softdot.studio.processes import Tell
 from softdot.studio.work.press import TaskProgress
 
 SHOWN = 600
