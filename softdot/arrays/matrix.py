@@ -13,8 +13,6 @@ from softdot.arrays.case import ArrayCase
 from softdot.arrays.presses import ArrayPresses, Signals
 from softdot.prepared_press import PreparedPress
 
-SYMMETRIC_WITHIN = 1e-9
-
 
 @dataclass(frozen=True)
 class CrosstalkMatrix:

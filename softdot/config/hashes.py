@@ -4,21 +4,8 @@ import hashlib
 import json
 from pathlib import Path
 
-from geometry.array.parameters import Array as Array
-from geometry.fabrication.parameters import Fabrication as Fabrication
-from geometry.parameters import Dot as Dot
-from geometry.parameters import Segment as Segment
-from geometry.parameters import Table as Table
-from mesh.options import MeshOptions as MeshOptions
 from softdot.config.loading import with_implied_values
 from softdot.config.schema import Config
-from solve.materials.parameters import AnyMaterial as AnyMaterial
-from solve.materials.parameters import Material as Material
-from solve.materials.parameters import PiezoelectricFilm as PiezoelectricFilm
-from solve.mechanisms import Mechanism as Mechanism
-from solve.mechanisms import refuse_repeated as refuse_repeated
-from solve.model import Press as Press
-from solve.model import Readout as Readout
 
 
 def config_hash(config: Config) -> str:

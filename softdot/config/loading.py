@@ -8,27 +8,14 @@ from typing import Any
 from pydantic import ValidationError
 
 from foundation.errors import InputError
-from geometry.array.parameters import Array as Array
-from geometry.fabrication.parameters import Fabrication as Fabrication
-from geometry.parameters import Dot as Dot
-from geometry.parameters import Segment as Segment
-from geometry.parameters import Table as Table
 from geometry.stack import layers
-from mesh.options import MeshOptions as MeshOptions
 from softdot.config.default_design import default_design, keys_from_default, with_default_design
 from softdot.config.errors import refuse_absurd_numbers, sentence, without_round_off
 from softdot.config.schema import Config
 from softdot.config.settings import naming_the_flag, with_settings
 from softdot.config.toml import read_toml
-from solve.materials.parameters import AnyMaterial as AnyMaterial
-from solve.materials.parameters import Material as Material
-from solve.materials.parameters import PiezoelectricFilm as PiezoelectricFilm
 from solve.materials.parameters import find_material, library_tables
-from solve.mechanisms import Mechanism as Mechanism
-from solve.mechanisms import refuse_repeated as refuse_repeated
 from solve.model import DEFAULT_INDENTATION_MM
-from solve.model import Press as Press
-from solve.model import Readout as Readout
 
 
 def load_config(path: Path | str | None = None, settings: Sequence[str] = ()) -> Config:
