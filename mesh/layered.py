@@ -48,7 +48,7 @@ def layer_heights(
         under_dot = field.at(np.column_stack([np.full_like(z, x), np.full_like(z, y), z]))
         if not stack.is_slice:  # resolving the held side over the whole footprint is too dear in a solid
             return under_dot
-        at_side = field.at(np.column_stack([np.full_like(z, stack.half_x), np.zeros_like(z), z]))
+        at_side = field.at(np.column_stack([np.full_like(z, field.side_x_mm), np.zeros_like(z), z]))
         return np.minimum(under_dot, at_side)
 
     def through(bottom: float, top: float) -> Floats:

@@ -54,6 +54,11 @@ class Sizing:
         share, growth = of_slice if self.outline.is_slice else of_solid
         return np.asarray(share * self.film_mm + growth * away)
 
+    @property
+    def side_x_mm(self) -> float:
+        """x in mm at which the side that the case may hold is resolved."""
+        return self.outline.half_x
+
     def _distance_to_side(self, points: Floats) -> Floats:
         """Distance (n,) in mm to the nearest side that the case may hold."""
         to_x = self.outline.half_x - np.abs(points[:, 0])

@@ -7,6 +7,7 @@ of its section, as mesh.slice has it. A layer that is held at walls inside the a
 among its facets side-<part>, as its sides at the rim.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +21,7 @@ from mesh.array.sizing import ArraySizing, array_sizing
 from mesh.bisection import Triangulation
 from mesh.layered import layer_heights
 from mesh.options import MeshOptions
-from mesh.outline import RoundSurface, StackOutline, curved_surface, stack_outline
+from mesh.outline import RoundSurface, curved_surface, stack_outline
 from mesh.quadratic import facets_between_parts, quadratic_nodes_and_tets
 from mesh.quality import refuse_inverted
 from mesh.section import MeshedSection, structured_section
@@ -84,7 +85,7 @@ def array_mesh(layout: ArrayLayout, dot: DotShape, options: MeshOptions, planes:
     else:
         linear = _extrude(layout, footprint_triangulation(layout, field), heights, layer_region, names)
     points, tets = quadratic_nodes_and_tets(linear, _round_surfaces(layout))
-    facets = _facets(layout, points, tets, linear.region, linear.region_names, field.outline)
+    facets = _facets(layout, points, tets, linear.region, linear.region_names, planes)
     twin = node_twins(points) if layout.is_slice else np.arange(len(points), dtype=np.int64)
     result = TetMesh(points, tets, linear.region, linear.region_names, facets, twin, thickness_mm, planes)
     refuse_inverted(result)
@@ -150,7 +151,7 @@ def _nodes(
 
 
 def _facets(
-    layout: ArrayLayout, points: Floats, tets: Ints, region: Ints, names: tuple[str, ...], outline: StackOutline
+    layout: ArrayLayout, points: Floats, tets: Ints, region: Ints, names: tuple[str, ...], planes: Planes
 ) -> dict[str, Ints]:
     """Facets of the mesh by name, as in mesh.types.TetMesh.
 
@@ -162,12 +163,11 @@ def _facets(
     corner = points[outer[:, :3]]
     flat = np.ptp(corner[..., 2], axis=1) < PLANE_TOLERANCE_MM
     on_base = flat & (np.abs(corner[..., 2]).max(axis=1) < PLANE_TOLERANCE_MM)
-    faces_of_slice = (np.abs(np.abs(corner[..., 1]) - outline.half_y) < PLANE_TOLERANCE_MM).all(axis=1)
-    cut = faces_of_slice & layout.is_slice
-    for axis in outline.planes:
+    cut = (np.ptp(corner[..., 1], axis=1) < PLANE_TOLERANCE_MM) & layout.is_slice
+    for axis in planes:
         cut |= (np.abs(corner[..., axis]) < PLANE_TOLERANCE_MM).all(axis=1)
     result = {"contact": outer[_touchable(layout, corner, part, names, flat) & ~cut], "base": outer[on_base]}
-    at_rim = _on_rim_planes(corner, layout.half_mm)
+    at_rim = _on_rim_planes(corner, layout.half_mm[: 1 if layout.is_slice else 2])
     for number, name in enumerate(names):
         held = ~flat if name in layout.array.grid_layers else at_rim
         mine = outer[held & ~cut & (part == number)]
@@ -191,7 +191,7 @@ def _touchable(layout: ArrayLayout, corner: Floats, part: Ints, names: tuple[str
     return np.asarray(touchable)
 
 
-def _on_rim_planes(corner: Floats, half_mm: tuple[float, float]) -> Bools:
-    """Whether facets with these corners (k, 3, 3) lie in a plane of the rim; shape (k,)."""
-    away = np.abs(np.abs(corner[..., :2]) - np.array(half_mm))
+def _on_rim_planes(corner: Floats, half_mm: Sequence[float]) -> Bools:
+    """Whether facets with these corners (k, 3, 3) lie in a plane of the rim in x, or x and y; shape (k,)."""
+    away = np.abs(np.abs(corner[..., : len(half_mm)]) - np.array(half_mm))
     return np.asarray((away < PLANE_TOLERANCE_MM).all(axis=1).any(axis=1))

@@ -43,6 +43,13 @@ class ArraySizing(Sizing):
         contact = self.contact_mm + SIZE_GROWTH * self._distance_to_contact(points)
         return np.asarray(np.minimum(np.minimum(np.minimum(contact, film), rim), self.coarse_mm))
 
+    @property
+    def side_x_mm(self) -> float:
+        """x in mm of that end of the film where its edges are smallest, which is beside the dot."""
+        x = self.ends[:, :2].ravel()
+        film = np.column_stack([x, np.zeros_like(x), np.full_like(x, self.outline.film_top)])
+        return float(x[np.argmin(self.at(film))])
+
     def at_footprint(self, xy_mm: Floats) -> Floats:
         """Smallest edge lengths (n,) in mm of skin and film above points (n, 2) of the footprint."""
         at = [np.column_stack([xy_mm, np.full(len(xy_mm), z)]) for z in (self.outline.film_top, self.outline.top)]

@@ -48,17 +48,18 @@ def test_a_row_of_one_slice_is_the_slice():
 
 def test_far_apart_slices_add_up():
     """Islands under a ridge: the pressed one is a lone slice, the others read nothing. Under one plate: all are lone
-    slices, and the forces are added.
+    slices, and the forces are added. Of those at the ends, which have no column in their middle, the mesh is another.
     """
     three, one = row(3, **FAR), row(1, shared=[])
     force, charge = numbers(three.press_over(three.layout.places[1]))
     lone_force, lone_charge = numbers(one.press_over(one.layout.places[0]))
-    assert force == pytest.approx(lone_force, rel=5e-3)
-    np.testing.assert_allclose(charge, [0.0, lone_charge[0], 0.0], rtol=5e-3, atol=1e-9 * lone_charge[0])
+    assert force == pytest.approx(lone_force, rel=1e-9)
+    np.testing.assert_allclose(charge, [0.0, lone_charge[0], 0.0], rtol=1e-9, atol=1e-9 * lone_charge[0])
     plates = [PreparedPress(case.config.model_copy(update={"dot": Dot(shape="plate")})) for case in (three, one)]
     (force, charge), (lone_force, lone_charge) = map(numbers, plates)
-    assert force == pytest.approx(3.0 * lone_force, rel=5e-3)
-    np.testing.assert_allclose(charge, np.full(3, lone_charge[0]), rtol=5e-3)
+    assert force == pytest.approx(3.0 * lone_force, rel=1e-2)
+    np.testing.assert_allclose(charge, np.full(3, lone_charge[0]), rtol=1e-2)
+    assert charge[1] == pytest.approx(lone_charge[0], rel=1e-9)
 
 
 def test_a_press_of_a_row_and_its_mirror_image():
