@@ -118,7 +118,7 @@ def test_a_press_that_stops_is_told_by_its_segment(monkeypatch, tmp_path):
 REFUSED = {
     "ridge": ({"dot": {"shape": "ridge"}}, "dot.shape = 'ridge': an array is pressed by round dots"),
     "a cap over slices": (
-        {"segment": {"section": "plane-strain"}},
+        {"segment": {"section": "plane-strain"}, "dot": {"shape": "cap"}},
         "dot.shape = 'cap': a row of slices is pressed by a 'ridge'",
     ),
     "slide": ({"press": {"path_xy_mm": [[1.0, 0.0]]}}, "press.path_xy_mm: softdot array presses each segment in turn"),
