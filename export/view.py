@@ -46,10 +46,10 @@ class DrawnBody:
     line_width: float = 0.0
 
 
-def picture_box(flat_mm: Floats, pad: float = 0.02) -> tuple[float, float, float, float]:
-    """Left, right, bottom and top in mm around flat points (n, 2), with a margin of pad of the longer side."""
+def picture_box(flat_mm: Floats) -> tuple[float, float, float, float]:
+    """Left, right, bottom and top in mm around flat points (n, 2), with a margin of 2 % of the longer side."""
     low, high = flat_mm.min(axis=0), flat_mm.max(axis=0)
-    extra = pad * (high - low).max()
+    extra = 0.02 * (high - low).max()
     return low[0] - extra, high[0] + extra, low[1] - extra, high[1] + extra
 
 

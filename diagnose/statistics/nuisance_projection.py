@@ -51,12 +51,3 @@ class Marginal:
 
     def _without_free(self, values: Floats) -> Floats:
         return np.asarray(values - self.free @ (self.free.T @ values))
-
-
-def posterior(residual: Floats, tangent: Floats, prior_sigma: Floats) -> tuple[Floats, Floats]:
-    """Mean (p,) and covariance (p, p) of the nuisances given a residual (n,).
-
-    LinAlgError where a nuisance without a prior leaves no trace.
-    """
-    covariance = np.asarray(np.linalg.inv(tangent.T @ tangent + np.diag(1.0 / prior_sigma**2)), dtype=np.float64)
-    return covariance @ (tangent.T @ residual), covariance

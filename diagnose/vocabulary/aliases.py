@@ -12,11 +12,6 @@ from solve.mechanisms import with_mechanisms
 from solve.model import Model
 
 
-def same_physics(model: Model, one: Setting, other: Setting) -> bool:
-    """Whether two settings make one and the same model of this one. False where it has no such component."""
-    return _changed(model, one) == _changed(model, other) is not None
-
-
 def without_aliases(model: Model, candidates: Iterable[Candidate]) -> tuple[Candidate, ...]:
     """Candidates that differ in the model that they make; each knows those of the others that are identical to it."""
     kept: list[tuple[Candidate, Model | None]] = []

@@ -59,8 +59,9 @@ def sheet_thing(outline: Outline, bottom_mm: float, thickness_mm: float, colour:
     return Thing(flat.extrude((0.0, 0.0, thickness_mm), capping=True), colour, name)
 
 
-def draw_things(things: Sequence[Thing], title: str, path: Path, view: View = VIEW_FROM_ABOVE) -> None:
-    """Draw things with their names and write a PNG. InputError without OpenGL."""
+def draw_things(things: Sequence[Thing], title: str, path: Path) -> None:
+    """Draw things from above with their names and write a PNG. InputError without OpenGL."""
+    view = VIEW_FROM_ABOVE
     shown = [thing for thing in things if thing.surface.n_points]
     box = picture_box(np.vstack([view.flat(np.asarray(thing.surface.points)) for thing in shown]))
     figure, axes, pixels_per_mm = picture_page(box, title)

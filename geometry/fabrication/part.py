@@ -3,12 +3,12 @@
 import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import cache
 from importlib.resources import files
 from typing import Any, Literal, get_args
 
 from foundation.errors import InputError
+from foundation.nearest_name import nearest_name_hint
 from geometry.fabrication.parameters import Fabrication, Printer
 from geometry.solids import Part
 
@@ -70,13 +70,11 @@ def printer_names() -> tuple[str, ...]:
 
 
 @cache
-def printer_profile(name: str, field: str = "--printer") -> PrinterProfile:
-    """A printer profile by its name. InputError, which names the field and the nearest name, for an unknown one."""
+def printer_profile(name: str) -> PrinterProfile:
+    """A printer profile by its name. InputError, which names the nearest one, for an unknown one."""
     rows = _printer_table()["printers"]
     if name not in rows:
-        near = get_close_matches(name.lower(), rows, n=1, cutoff=0.5)
-        hint = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(rows)}"
-        raise InputError(f"{field} = '{name}': no such printer profile; {hint}")
+        raise InputError(f"--printer = '{name}': no such printer profile; {nearest_name_hint(name.lower(), rows)}")
     row, sources = rows[name], _printer_table()["sources"]
     limits = {
         key: Limit(value, sources[source], confidence)

@@ -6,12 +6,12 @@ other keys of the default design are the defaults of the schema. Recordings are 
 was built.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from softdot.config.toml import parse_toml
+from softdot.config.toml import leaves, parse_toml
 
 THICKNESSES = {"medium1": "thickness_mm", "film": "thickness_um", "medium2": "thickness_mm"}
 """Layer -> its key of the thickness; a segment that states all of them has a stack of its own."""
@@ -49,7 +49,7 @@ def keys_from_default(tables: Mapping[str, Any], config: Mapping[str, Any]) -> t
     tables : the file as read. config : the whole configuration as nested tables.
     """
     standard = ("dot", "standard")  # also where the schema leaves it open, and the dot is that of the default
-    absent = (key for key in _leaves(default_design()) if _value_at(tables, key) is None)
+    absent = (key for key, _ in leaves(default_design()) if _value_at(tables, key) is None)
     kept = [key for key in absent if _value_at(config, key) is not None or key == standard]
     dot = config.get("dot", {})
     if dot.get("shape") == "plate" or any(dot.get(size) is not None for size in DOT_SIZES):
@@ -66,15 +66,6 @@ def _table(tables: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     """The inner table of that name, empty where there is none."""
     found = tables.get(name, {})
     return found if isinstance(found, dict) else {}
-
-
-def _leaves(tables: Mapping[str, Any], way: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
-    """The path of every value in nested tables, as a tuple of keys."""
-    for name, value in tables.items():
-        if isinstance(value, dict):
-            yield from _leaves(value, (*way, name))
-        else:
-            yield (*way, name)
 
 
 def _value_at(tables: Any, way: tuple[str, ...]) -> Any:

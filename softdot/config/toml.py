@@ -3,7 +3,7 @@
 import copy
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -63,6 +63,15 @@ def key_path(key: str) -> tuple[str | int, ...]:
     if not parts:
         raise ValueError("must not be empty")
     return tuple(parts)
+
+
+def leaves(tables: Mapping[str, Any], way: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+    """Path, as a tuple of keys, and value of everything in nested tables that is no table."""
+    for name, value in tables.items():
+        if isinstance(value, Mapping):
+            yield from leaves(value, (*way, name))
+        else:
+            yield (*way, name), value
 
 
 def with_value(tables: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:

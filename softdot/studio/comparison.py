@@ -1,7 +1,9 @@
 """What differs between designs, and what they give: rows of a table."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
+
+from softdot.config.toml import leaves
 
 LEFT_OUT = {"fabrication", "materials"}
 """Tables that a comparison leaves out: of materials the layer names which."""
@@ -9,17 +11,12 @@ LEFT_OUT = {"fabrication", "materials"}
 
 def differences(before: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str, Any]:
     """Dotted key -> value after, of all values that differ."""
-    old, new = dict(_leaves(before)), dict(_leaves(after))
+    old, new = _leaves(before), _leaves(after)
     return {key: new.get(key) for key in {**new, **old} if old.get(key) != new.get(key)}
 
 
-def _leaves(tables: Any, way: str = "") -> Iterator[tuple[str, Any]]:
-    if isinstance(tables, Mapping):
-        for name, value in tables.items():
-            if way or name not in LEFT_OUT:
-                yield from _leaves(value, f"{way}.{name}" if way else name)
-    else:
-        yield way, tables
+def _leaves(tables: Mapping[str, Any]) -> dict[str, Any]:
+    return {".".join(way): value for way, value in leaves(tables) if way[0] not in LEFT_OUT}
 
 
 NUMBERS = (
@@ -44,9 +41,9 @@ def compared(designs: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     strains = [((design["numbers"] or {}).get("film") or {}).get("max_principal_strain") for design in designs]
     rows.append({"label": "strain of the film", "unit": "%", "cells": [s and 100 * s for s in strains]})
     rows = [row for row in rows if any(cell is not None for cell in row["cells"])]
-    leaves = [dict(_leaves(design["values"])) for design in designs]
-    for key in dict.fromkeys(key for one in leaves for key in one):
-        cells = [one.get(key) for one in leaves]
+    stated = [_leaves(design["values"]) for design in designs]
+    for key in dict.fromkeys(key for one in stated for key in one):
+        cells = [one.get(key) for one in stated]
         if any(cell != cells[0] for cell in cells):
             rows.append({"label": key, "unit": "", "cells": cells})
     return rows

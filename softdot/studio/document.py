@@ -98,26 +98,17 @@ def _put(place: Any, last: str | int, value: Any) -> None:
             del place[last]
         return
     if isinstance(value, dict):
-        value = _in_braces(value) if isinstance(place, Array | InlineTable) else _table(value)
+        value = _filled(tomlkit.inline_table() if isinstance(place, Array | InlineTable) else tomlkit.table(), value)
     if isinstance(last, int) and last == len(place):
         place.append(value)
     else:
         place[last] = value
 
 
-def _table(values: dict[str, Any]) -> Any:
-    """A table, its inner tables in braces on one line."""
-    made = tomlkit.table()
+def _filled(made: Any, values: dict[str, Any]) -> Any:
+    """A table of tomlkit with these values, its inner tables in braces on one line."""
     for name, value in values.items():
-        made[name] = _in_braces(value) if isinstance(value, dict) else value
-    return made
-
-
-def _in_braces(values: dict[str, Any]) -> Any:
-    """A table on one line."""
-    made = tomlkit.inline_table()
-    for name, value in values.items():
-        made[name] = _in_braces(value) if isinstance(value, dict) else value
+        made[name] = _filled(tomlkit.inline_table(), value) if isinstance(value, dict) else value
     return made
 
 
