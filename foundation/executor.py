@@ -67,7 +67,7 @@ class Here:
     places = 1
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any) -> "Future[Any]":
-        """Return a future that is done already."""
+        """Do a call here and return its future, which is done already."""
         future: Future[Any] = Future()
         try:
             future.set_result(function(*arguments))

@@ -98,11 +98,10 @@ class StackOutline:
 def stack_outline(
     segment: Segment, film_thickness_mm: float | None = None, slice_mm: float = 0.0, planes: Planes = ()
 ) -> StackOutline:
-    """The outline of a segment.
+    """The outline of a segment: heights, sizes and the shape of its effector.
 
     film_thickness_mm : thickness of the film, if other than the segment's; slice_mm : size in y of a plane-strain
-    slice;
-    planes : mirror planes at which it is cut.
+    slice; planes : mirror planes at which it is cut.
     """
     film = segment.film.thickness_um * 1e-3 if film_thickness_mm is None else film_thickness_mm
     is_slice = segment.section == "plane-strain"

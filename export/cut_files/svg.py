@@ -97,6 +97,7 @@ def _draw_dimension(sheet: SvgSheet, size: Dimension) -> None:
 
 
 def _moved_point(point: Point, way: Point, distance: float) -> Point:
+    """The point moved by a distance along a unit vector."""
     return point[0] + distance * way[0], point[1] + distance * way[1]
 
 

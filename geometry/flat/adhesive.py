@@ -61,6 +61,7 @@ def body_dimensions(cut: Outline | Circle) -> tuple[Dimension, ...]:
 def _pad_pattern(
     name: str, title: str, cut: Outline | Circle, where: str, count: int, fabrication: Fabrication
 ) -> FlatPattern:
+    """The pattern of an adhesive, to be cut `count` times; where : words for the place at which it is laid."""
     return FlatPattern(
         name=f"adhesive-{name}",
         title=title,

@@ -93,6 +93,7 @@ class Lattice:
         return found
 
     def _refuse_full_channel(self) -> None:
+        """InputError, with the margin that would do, where more traces must pass between two electrodes than fit."""
         counts = range(1, self.ranks + 1)
         most = next(n for n in counts if _assign_ways(self.ranks, self.files, [inf, *[n] * (self.files - 1), inf]))
         narrowest, needed = min(self.gaps), most * self.width + (most + 1) * self.gap

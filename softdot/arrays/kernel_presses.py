@@ -115,6 +115,7 @@ def _keep(task: KernelTask, found: KernelPress) -> None:
 
 
 def _path(task: KernelTask) -> Path:
+    """The file in which the press of a task is kept."""
     return cache_folder() / f"kernel-{data_hash([source_hash(__name__), input_hash(task.config), task.nodes_mm])}.npz"
 
 

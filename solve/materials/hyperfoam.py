@@ -34,7 +34,7 @@ class HyperfoamLaw:
 
     @property
     def compressible(self) -> bool:
-        """True: the law gives the whole stress, there is no pressure unknown."""
+        """True, as the law gives the whole stress and there is no unknown pressure."""
         return True
 
     def scale_moduli(self, factor: float) -> "HyperfoamLaw":

@@ -64,7 +64,7 @@ class InvariantLaw:
 
     @property
     def compressible(self) -> bool:
-        """False: the pressure is an unknown."""
+        """False, as stress and energy are isochoric and the pressure is an unknown."""
         return False
 
     def scale_moduli(self, factor: float) -> "InvariantLaw":
@@ -99,7 +99,7 @@ class KnowlesLaw:
 
     @property
     def compressible(self) -> bool:
-        """False: the pressure is an unknown."""
+        """False, as stress and energy are isochoric and the pressure is an unknown."""
         return False
 
     def scale_moduli(self, factor: float) -> "KnowlesLaw":
@@ -133,7 +133,7 @@ class OgdenLaw:
 
     @property
     def compressible(self) -> bool:
-        """False: the pressure is an unknown."""
+        """False, as stress and energy are isochoric and the pressure is an unknown."""
         return False
 
     def scale_moduli(self, factor: float) -> "OgdenLaw":
@@ -164,7 +164,7 @@ class LinearLaw:
 
     @property
     def compressible(self) -> bool:
-        """False: the pressure is an unknown."""
+        """False, as stress and energy are isochoric and the pressure is an unknown."""
         return False
 
     def scale_moduli(self, factor: float) -> "LinearLaw":

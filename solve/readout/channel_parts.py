@@ -24,6 +24,7 @@ class ChannelPart:
 
     @property
     def _channel_names(self) -> str:
+        """The channels as a reader is told of them: 'channel-1' and 'channel-2'."""
         return " and ".join(f"'channel-{number}'" for number in self.channels)
 
     def stages_behind(self, channel: int) -> tuple[Stage, ...]:

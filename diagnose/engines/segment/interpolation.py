@@ -121,6 +121,7 @@ def _glue_layout(coordinates: tuple[Coordinate, ...], pressed: tuple[int, ...], 
 
 
 def _point_at(coordinates: tuple[Coordinate, ...], values: dict[int, float]) -> tuple[float, ...]:
+    """The point with these values by the number of their coordinate, and 0 in all other coordinates."""
     return tuple(values.get(n, 0.0) for n in range(len(coordinates)))
 
 

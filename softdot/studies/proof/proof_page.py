@@ -41,7 +41,7 @@ def percent(rate: Mapping[str, Any]) -> str:
 
 
 def text(summary: Mapping[str, Any]) -> str:
-    """The whole page."""
+    """The whole page of a proof in Markdown, from the content of its summary."""
     rates = summary["rates"]
     ended = ", ".join(f"{count} {status}" for status, count in summary["ended"].items())
     rigs = ", ".join(summary["rigs"])

@@ -32,10 +32,12 @@ class PressCurve:
 
     @cached_property
     def _force(self) -> CubicSpline:
+        """The force in N as a spline over the depth in mm."""
         return CubicSpline(self.depth_mm, self.force_N)
 
     @cached_property
     def _voltage(self) -> CubicSpline:
+        """The voltage in V as a spline over the depth in mm."""
         return CubicSpline(self.depth_mm, self.voltage_V)
 
 

@@ -118,6 +118,7 @@ def _force_of_harder_backing(presses: Presses) -> Verdict:
 
 
 def _force_of_thinner_medium(presses: Presses) -> Verdict:
+    """Whether a thinner medium 1 needs more force, as the paper has it."""
     names = ("final-clamped", "C1-E2-1")
     return in_order([presses[name].force_N for name in names]), _newtons(presses, *names)
 
