@@ -10,7 +10,6 @@ import asyncio
 import logging
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from functools import partial
 from importlib import import_module
 from inspect import signature
 from typing import Any
@@ -39,7 +38,11 @@ class Worker(WorkerProcess):
 
     async def run(self, task: str, *arguments: Any, tell: Tell = lambda _: None) -> Any:
         """What the task returns. TaskRefused, ProcessDiedError; where the waiting is cancelled, the process ends."""
-        told = partial(asyncio.get_running_loop().call_soon_threadsafe, tell)
+        loop = asyncio.get_running_loop()
+
+        def told(value: Any) -> None:
+            loop.call_soon_threadsafe(tell, value)
+
         try:
             return await asyncio.wrap_future(self.begin(do_task, task, arguments, tell=told))
         except asyncio.CancelledError:
