@@ -20,10 +20,11 @@ def exact(powers) -> float:
     return np.prod([factorial(p) for p in powers]) / factorial(sum(powers) + len(powers))
 
 
-def test_tetrahedron():
-    points, weights = tetrahedron()
+@for_each("degree", [3, 5])
+def test_tetrahedron(degree):
+    points, weights = tetrahedron(degree)
     assert (weights > 0).all()
-    for powers in monomials(3, 3):
+    for powers in monomials(3, degree):
         assert weights @ np.prod(points**powers, axis=1) == pytest.approx(exact(powers), abs=1e-15)
 
 
