@@ -61,7 +61,7 @@ def findings_of(found: Compared, detected: Checked, report: Report) -> Findings:
     model, screening = judge.model, judge.found
     report("held-out presses", 0, 1)
     gains = best.scored.log_scores - found.nothing.scored.log_scores if best is not None else np.zeros(0)
-    train, held_out = trained_and_held(model, screening, best.fit if best is not None else None, gains)
+    train, held_out = trained_and_held(screening, best or found.nothing, gains)
     group = explanations_as_good(found)
     evidence = evidence_of(found, detected, group, held_out)
     verdict = judged(evidence)

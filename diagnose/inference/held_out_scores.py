@@ -30,7 +30,7 @@ SMOOTH_SIZES = SIZES[:5]
 Were more allowed, a fit would be praised for its details while it misses the press."""
 
 
-class Rest(NamedTuple):
+class RandomRest(NamedTuple):
     """A random rest. size : relative to the signal. spectrum : its number in SPECTRA."""
 
     size: float
@@ -38,7 +38,7 @@ class Rest(NamedTuple):
 
 
 RESTS = tuple(
-    Rest(float(size), number)
+    RandomRest(float(size), number)
     for number, power in enumerate(SPECTRA)
     for size in (SMOOTH_SIZES if power > 0.0 else SIZES)
 )
@@ -190,7 +190,7 @@ class _Scoring:
             self._sums[kind, rest] = found
         return self._sums[kind, rest]
 
-    def _weight(self, rest: Rest) -> Floats:
+    def _weight(self, rest: RandomRest) -> Floats:
         return np.asarray(1.0 / np.sqrt(self.variance + rest.size**2 * self.rough[rest.spectrum]))
 
     def _rest(self, state: tuple[int, ...]) -> Floats:

@@ -44,12 +44,15 @@ FLAT = 1e6  # sigma of the noise over all samples: a prior for what has none
 class Hypothesis:
     """A hypothesis with its score.
 
-    fit : None for nothing and for something else. found_as : the fit beside which further mechanisms are sought, with a
-    small discrepancy only. left : (n,) squares above noise of what it leaves of conditions that were left out, relative
-    to the signal of each channel, 0 where a condition is not judged.
+    fit : None for nothing and for something else. metric : the model in whose metric it was fitted, and form_excess :
+    excess of which an error of its law may have taken a part there. found_as : the fit beside which further mechanisms
+    are sought, with a small discrepancy only. left : (n,) squares above noise of what it leaves of conditions that were
+    left out, relative to the signal of each channel, 0 where a condition is not judged.
     """
 
     fit: Fitted | None
+    metric: ObservedModel
+    form_excess: float
     found_as: Fitted | None
     scored: Scored
     left: Floats
@@ -96,34 +99,49 @@ class Judge:
     def nothing(self) -> Hypothesis:
         """The baseline, with strained nuisances held at what the experimenter declared."""
         system = hold_strained_nuisances(self.found.start, self.found.baseline)
-        return self._hypothesis(None, system, self.model.tolerance)
+        return self._hypothesis(None, system, self.model, self.found.excess)
 
     @cached_property
     def something_else(self) -> Hypothesis:
         """The baseline with a flexible memory."""
         system = hold_strained_nuisances(self.found.start, self.found.baseline)
-        return self._hypothesis(None, system, self.model.tolerance, flexible_memory(self.model.samples))
+        memory = flexible_memory(self.model.samples)
+        return self._hypothesis(None, system, self.model, self.found.excess, memory)
 
     def scored(self, fit: Fitted) -> Hypothesis:
         """The hypothesis of a fit; where it leaves more than a rig's flaws it is fitted anew beside so much, without an
         error of its law, and what predicts better counts. Beside little noise a law that is not exact would follow its
         smallest details otherwise.
         """
-        first = self._hypothesis(fit, cap_nuisances(fit.system), self.model.tolerance)
+        first = self._hypothesis(fit, cap_nuisances(fit.system), self.model, self.found.excess)
         if self.error(first) <= VISIBLE_ERROR:
             return first
         start = replace(self.found.start, values=fit.system.values)
-        again = fit_mechanisms(self.model.with_tolerance(first.scored.rest), start, fit.candidates, fit.values, 0.0)
-        other = self._hypothesis(again, cap_nuisances(again.system), first.scored.rest)
+        metric = self.model.with_tolerance(first.scored.rest)
+        again = fit_mechanisms(metric, start, fit.candidates, fit.values, 0.0)
+        other = self._hypothesis(again, cap_nuisances(again.system), metric, 0.0)
         return replace(other, found_as=fit) if self.error(other) < self.error(first) else first
 
     def _hypothesis(
-        self, fit: Fitted | None, system: LinearisedSystem, tolerance: Floats, memory: Floats | None = None
+        self,
+        fit: Fitted | None,
+        system: LinearisedSystem,
+        metric: ObservedModel,
+        form_excess: float,
+        memory: Floats | None = None,
     ) -> Hypothesis:
-        """tolerance : (n,) variance of a discrepancy that the system has among its noise."""
-        linear = self._linear(fit, replace(system, numerical=system.numerical - tolerance), memory)
+        linear = self._linear(fit, replace(system, numerical=system.numerical - metric.tolerance), memory)
         scored = self.scorer.scored(linear)
-        return Hypothesis(fit, fit, scored, self.errors.above_noise(scored.missed))
+        left = self.errors.above_noise(scored.missed)
+        if fit is not None:
+            fitted = self.errors.above_noise(self._residual(fit, metric))
+            left = max(left, fitted, key=np.sum)  # nothing predicts better than it fits: the linear model went too far
+        return Hypothesis(fit, metric, form_excess, fit, scored, left)
+
+    def _residual(self, fit: Fitted, metric: ObservedModel) -> Floats:
+        """Whitened residual (n,) of a fit itself."""
+        shown = metric.vector(fit.closest_nuisances(metric), fit.settings)
+        return np.asarray(self.model.samples.recorded_vector - shown)
 
     def _linear(self, fit: Fitted | None, system: LinearisedSystem, memory: Floats | None) -> LinearHypothesis:
         """Without the errors of the engine among the columns, which the discrepancy has."""

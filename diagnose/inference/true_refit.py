@@ -10,8 +10,9 @@ from diagnose.fit.baseline import CAP_SIGMAS, PLAUSIBLE_SIGMAS
 from diagnose.fit.linearised_system import LinearisedSystem, linearise
 from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import Fitted, fit_mechanisms
+from diagnose.fit.refit import fit_mechanisms
 from diagnose.forward import Setting
+from diagnose.inference.hypotheses import Hypothesis
 from diagnose.inference.screening import Screening
 from foundation.arrays import Bools, Floats
 
@@ -23,27 +24,22 @@ def split(presses: int) -> tuple[list[int], list[int]]:
     return list(range(0, presses, 2)), list(range(1, presses, 2))
 
 
-def trained_and_held(
-    model: ObservedModel,
-    found: Screening,
-    fit: Fitted | None,
-    gains: Floats,
-    halves: tuple[list[int], list[int]] | None = None,
-) -> tuple[Fit, Fit | None]:
-    """Errors on training presses and on held-out ones; None where there is one press only.
+def trained_and_held(found: Screening, one: Hypothesis, gains: Floats) -> tuple[Fit, Fit | None]:
+    """Errors of a hypothesis on training presses and on held-out ones, every second one; None where there is one only.
 
-    halves : numbers of both, every second one unless told otherwise. gains : (presses,) held-out log-score gains.
-    Mechanisms and shared nuisances come from training presses alone. What floats in a run that has no training press is
-    fitted to it with both models alike, under its prior.
+    gains : (presses,) held-out log-score gains. Mechanisms and shared nuisances come from training presses alone, in
+    the metric of the hypothesis. What floats in a run that has no training press is fitted to it with both models
+    alike, under its prior.
     """
+    model, fit = one.metric, one.fit
     samples = model.samples
-    training, held = halves or split(len(samples.presses))
+    training, held = split(len(samples.presses))
     informative = found.baseline.informative
     seen = informative & np.isin(samples.press, training)
     settings: tuple[Setting, ...] = ()
     after = before = relaxed(model, found.start.values, (), seen, np.zeros(len(model.nuisances), dtype=bool))
     if fit is not None:
-        own = fit_mechanisms(model, fit.system.restricted_to(seen), fit.candidates, fit.values, found.excess)
+        own = fit_mechanisms(model, fit.system.restricted_to(seen), fit.candidates, fit.values, one.form_excess)
         settings = own.settings
         after = own.closest_nuisances(model)
     runs = {samples.presses[n][0] for n in training}

@@ -17,7 +17,7 @@ from diagnose.fit.rig_discrepancy import RigDiscrepancy, played
 from diagnose.fit.samples import Samples
 from diagnose.inference import held_out_scores
 from diagnose.inference.conditions import Conditions, within_reach
-from diagnose.inference.held_out_scores import SIZES, HeldOutScorer, LinearHypothesis, Rest
+from diagnose.inference.held_out_scores import SIZES, HeldOutScorer, LinearHypothesis, RandomRest
 from diagnose.noise.estimate import noise_models
 from tests.diagnose.inference.toy import Sensor, ToyEngine, small
 
@@ -48,7 +48,7 @@ def hypothesis(columns, sigma):
 
 def test_scores_are_those_of_the_dense_normal_density(monkeypatch):
     """Summed over a grid of sizes under their priors; each group of conditions given all others."""
-    rests = (Rest(SIZES[2], 1), Rest(SIZES[3], 1))
+    rests = (RandomRest(SIZES[2], 1), RandomRest(SIZES[3], 1))
     monkeypatch.setattr(held_out_scores, "SMOOTH_SIZES", SIZES[2:4])
     monkeypatch.setattr(held_out_scores, "RESTS", rests)
     monkeypatch.setattr(held_out_scores, "NEGLIGIBLE_NATS", np.inf)
