@@ -34,7 +34,8 @@ def add_read(commands: Any) -> None:
         help="read a line of Braille with an array: voltages and back to text",
         description="Let an array slide over a line of Braille, or set it down cell by cell: the voltages of all "
         "segments by the kernel that softdot array wrote, and the text that decoders read from them.",
-        epilog="docs/reading.md explains the decoders, the results and the study. " + EXIT_STATUS,
+        epilog="docs/reading.md explains the decoders, the results and the study, docs/learned_kernel.md touches of "
+        "single cells by any sensor. " + EXIT_STATUS,
     )
     read.add_argument("text", nargs="?", help="the text, or Unicode Braille cells; may be left out with --recording")
     read.add_argument("config", nargs="?", metavar="CONFIG.toml", help="the design of the kernel, with its [readout]")
@@ -54,7 +55,16 @@ def add_read(commands: Any) -> None:
         metavar="NAME,NAME",
         help="the first one's text is what is read",
     )
-    read.add_argument("--recording", metavar="FILE.csv", help="decode these voltages: time_s, voltage_1_V, ...")
+    read.add_argument(
+        "--recording",
+        metavar="FILE.csv",
+        help="decode these voltages: time_s, voltage_1_V, ...; FILE.npz of touches with a learned kernel",
+    )
+    read.add_argument("--learn", nargs="+", metavar="FILE.npz", help="learn a kernel from labelled touches of cells")
+    read.add_argument("--keep-rest", action="store_true", help="with --learn: use what channels say before the touch")
+    read.add_argument(
+        "--among", choices=("all", "letters", "learned"), help="cells that touches may be of: all 64 by default"
+    )
     read.add_argument("--study", action="store_true", help="how far conditions may go before reading fails")
     read.add_argument("--conditions", metavar="FILE.toml", help="a study of these conditions")
     read.add_argument("--design", metavar="DESIGNS.toml", help="search for the array that reads with the least force")

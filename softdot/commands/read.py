@@ -87,12 +87,21 @@ def run_read(
 
 
 def command(chosen: Namespace) -> int:
-    """Read chosen.text into chosen.output, study how far conditions may go, or search for a design. InputError."""
+    """Read chosen.text into chosen.output, study how far conditions may go, search for a design, or learn and read
+    single touches. InputError.
+    """
     from foundation.errors import InputError
+    from softdot.commands import read_touches
     from softdot.config.loading import load_config
     from softdot.progress import progress_of
     from softdot.reading.conditions import refuse_idle
+    from softdot.reading.learned_kernel.kernel_file import is_learned_kernel
 
+    if chosen.learn is not None or is_learned_kernel(chosen.kernel):
+        return read_touches.command(chosen)
+    for name in ("keep_rest", "among"):
+        if getattr(chosen, name):
+            raise InputError(f"{_argument_name(name.replace('_', '-'))}: acts only on touches and a learned kernel")
     if chosen.design is not None:
         return _search_designs(chosen)
     if chosen.kernel is None:

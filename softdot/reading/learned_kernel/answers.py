@@ -1,0 +1,89 @@
+"""The answers of a learned kernel to touches: probabilities of all cells."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import softmax
+
+from foundation.arrays import Floats, Ints
+from foundation.errors import InputError
+from softdot.reading.cells import KINDS_OF_CELL
+from softdot.reading.learned_kernel.courses import STEPS, courses_of
+from softdot.reading.learned_kernel.kernel_file import LearnedKernel
+from softdot.reading.learned_kernel.scores import along_axes, scores_of_touches, scores_together
+from softdot.reading.learned_kernel.touches import SAME_SHARE, Touches, clipped_channels, letter_cells
+
+
+@dataclass(frozen=True)
+class Answers:
+    """Probabilities (n, 64) of the cells of touches and their scores; by_dots_alone (n,) : the best cells by
+    superposition alone; together : number, count and probabilities (64,) of touches of one cell.
+    """
+
+    probability: Floats
+    log_score: Floats
+    by_dots_alone: Ints
+    together: list[tuple[int, int, Floats]]
+    among: str
+    warnings: list[str]
+
+
+def answer_touches(kernel: LearnedKernel, touches: Touches, among: str) -> Answers:
+    """Answer touches of the sensor of the kernel. InputError for those of another one.
+
+    among : the cells that may be, "all" 64, "letters" with the blank, or those "learned".
+    """
+    _refuse_others(kernel, touches)
+    courses = courses_of(touches, kernel.about["rest_kept"], kernel.about["place_range_mm"])
+    moved = along_axes(kernel, courses)
+    barred = _barred(kernel, among)
+    score = scores_of_touches(kernel, moved)
+    dots = scores_of_touches(kernel, moved, by_dots_alone=True)
+    trust = kernel.about["trust"]
+    together = []
+    for number in [] if touches.together is None else np.unique(touches.together):
+        rows = np.flatnonzero(touches.together == number)
+        own = scores_together(kernel, moved[rows])
+        together.append((int(number), len(rows), softmax(trust * own + barred)))
+    return Answers(
+        softmax(trust * score + barred, axis=1), score, (dots + barred).argmax(axis=1), together, among,
+        _warnings(touches),
+    )  # fmt: skip
+
+
+def _barred(kernel: LearnedKernel, among: str) -> Floats:
+    """Minus infinity (64,) for cells that may not be, 0 for others."""
+    allowed = {
+        "all": np.arange(KINDS_OF_CELL),
+        "letters": np.array(list(letter_cells().values())),
+        "learned": kernel.learned_cells,
+    }[among]
+    return np.where(np.isin(np.arange(KINDS_OF_CELL), allowed), 0.0, -np.inf)
+
+
+def _refuse_others(kernel: LearnedKernel, touches: Touches) -> None:
+    """InputError for touches with other channels, another duration, too few samples, or without the course of place."""
+    channels, duration = kernel.about["channels"], kernel.about["duration_s"]
+    if touches.taxels.shape[2] != channels:
+        raise InputError(f"taxels: has {touches.taxels.shape[2]} channels, the kernel has {channels}")
+    if kernel.about["place_range_mm"] is not None:
+        if touches.place_mm is None:
+            raise InputError("place_mm is missing: the kernel was learned over places")
+        return
+    if abs(touches.duration_s - duration) > max(SAME_SHARE * duration, 1.0 / touches.sampling_Hz):
+        raise InputError(
+            f"taxels: a touch lasts {touches.duration_s:.4g} s, those of the kernel {duration:.4g} s; cut them alike"
+        )
+    if touches.sampling_Hz < 0.5 * min(kernel.about["sampling_Hz"], STEPS / duration):
+        raise InputError(
+            f"sampling_Hz = {touches.sampling_Hz:g}: is below half of the {kernel.about['sampling_Hz']:g} Hz that were "
+            "learned; sample faster"
+        )
+
+
+def _warnings(touches: Touches) -> list[str]:
+    clipped = clipped_channels(touches.taxels)
+    if not clipped:
+        return []
+    told = ", ".join(f"{number} ({100 * share:.0f} %)" for number, share in clipped.items())
+    return [f"channels with many values at their least or largest one, clipped perhaps: {told}"]

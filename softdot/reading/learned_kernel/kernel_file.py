@@ -1,0 +1,87 @@
+"""A learned kernel as tables that answer touches, saved in a folder with a checksum."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from foundation.arrays import Floats, Ints
+from foundation.errors import InputError
+
+FORMAT = "softdot-learned-kernel/1"
+NPZ, JSON, CHECKSUM = "kernel.npz", "kernel.json", "checksum_sha256"
+AGAIN = "learn it again by softdot read --learn"
+TABLES = ("centre", "weight", "axes", "mean", "dot_mean", "variance", "scatter", "shift_steps")
+
+
+@dataclass(frozen=True)
+class LearnedKernel:
+    """What touches of each of the 64 cells are like, along d axes of all that c channels do at t steps of a touch.
+
+    centre (t, c) : mean of the learned touches; weight (c,) : by which each channel is multiplied, 0 where it is dead.
+    axes (t, c, d). mean (64, d) and variance (64, d) : of the mean touch of each cell, dot_mean (64, d) the mean by the
+    courses of its dots alone; scatter (64, d, d) : covariance of touches of one cell. shift_steps (s,) : shifts over
+    which scores are summed. about : the rest.
+    """
+
+    centre: Floats
+    weight: Floats
+    axes: Floats
+    mean: Floats
+    dot_mean: Floats
+    variance: Floats
+    scatter: Floats
+    shift_steps: Floats
+    about: dict[str, Any]
+
+    @property
+    def learned_cells(self) -> Ints:
+        """Cells of which touches were learned, rising."""
+        return np.array(sorted(int(cell) for cell in self.about["touches_of_cells"]), dtype=np.int64)
+
+    def save(self, folder: Path) -> None:
+        """Write kernel.npz and kernel.json."""
+        tables = {name: getattr(self, name) for name in TABLES}
+        with (folder / NPZ).open("wb") as file:
+            np.savez_compressed(file, **tables)
+        about = {"format": FORMAT, **self.about}
+        text = json.dumps({CHECKSUM: _checksum(tables, about), **about}, indent=1, ensure_ascii=False)
+        (folder / JSON).write_text(text, encoding="utf-8")
+
+
+def is_learned_kernel(folder: str | None) -> bool:
+    """Whether a folder holds the JSON file of a learned kernel, changed or not."""
+    try:
+        about = json.loads((Path(folder or "") / JSON).read_text("utf-8"))
+    except (OSError, ValueError):
+        return False
+    return isinstance(about, dict) and str(about.get("format", "")).startswith(FORMAT.partition("/")[0])
+
+
+def load_learned_kernel(folder: Path) -> LearnedKernel:
+    """Load the learned kernel of a folder. InputError for one that is damaged, changed or of another format."""
+    where = f"kernel '{folder}'"
+    try:
+        about = json.loads((folder / JSON).read_text("utf-8"))
+        with np.load(folder / NPZ, allow_pickle=False) as file:
+            tables = {name: np.asarray(file[name]) for name in TABLES}
+    except Exception as error:  # the readers raise what a damaged file happens to lead to
+        raise InputError(f"{where}: cannot be read ({error}); {AGAIN}") from None
+    if about.get("format") != FORMAT:
+        raise InputError(f"{where}: format = {str(about.get('format'))[:40]!r}: must be '{FORMAT}'; {AGAIN}")
+    if about.pop(CHECKSUM, None) != _checksum(tables, about):
+        raise InputError(f"{where}: {CHECKSUM} is not that of {JSON} and {NPZ}, one of which was changed; {AGAIN}")
+    return LearnedKernel(**tables, about=about)
+
+
+def _checksum(tables: Mapping[str, Any], about: Mapping[str, Any]) -> str:
+    """SHA-256 of all that a kernel holds: what is said of it, and names, types, shapes and numbers of its tables."""
+    sha = sha256(json.dumps(about, sort_keys=True).encode())
+    for name in TABLES:
+        sha.update(f"{name} {tables[name].dtype} {tables[name].shape} ".encode())
+        sha.update(np.ascontiguousarray(tables[name]).tobytes())
+    return sha.hexdigest()

@@ -1,0 +1,181 @@
+"""Learning a kernel from labelled touches: alignment in time, axes, what each cell is like, and how sure to be."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from scipy.special import log_softmax, logsumexp
+
+from foundation.arrays import Floats, Ints
+from foundation.errors import InputError
+from softdot.progress import Progress
+from softdot.reading.cells import DOTS
+from softdot.reading.learned_kernel.cell_process import expect_cells, parts_of_covariance
+from softdot.reading.learned_kernel.courses import REST_SHARE, STEPS, courses_of, place_range_of, shift_courses
+from softdot.reading.learned_kernel.kernel_file import LearnedKernel
+from softdot.reading.learned_kernel.scatter import scatter_of_cells
+from softdot.reading.learned_kernel.scores import along_axes, scores_by_shift, scores_of_touches
+from softdot.reading.learned_kernel.touches import Touches, clipped_channels, dead_channels
+from softdot.version import installed_version
+
+MOST_AXES, ALIGNMENTS, SHIFTS = 25, 2, np.arange(-4.0, 5.0)
+"""Axes that are kept, rounds of alignment, and shifts in steps of a course that are tried."""
+LEAST_CELLS, LEAST_TOUCHES = 6, 2
+"""Different cells, and touches of each, that are needed."""
+QUIETEST = 0.3
+"""Least noise of a channel that is believed, of the median of all."""
+LETTERS_LEFT_OUT, FOLDS_OF_TOUCHES = 3, 4
+"""Cells that are left out together, and parts into which the touches of each cell are cut, to learn how sure to be."""
+TRUST = np.geomspace(0.02, 2.0, 93)
+"""Factors of the scores that are tried."""
+
+
+def learn_kernel(touches: Touches, keep_rest: bool, progress: Progress) -> LearnedKernel:
+    """Learn what touches of all 64 cells are like. InputError for too few cells or touches, or none with a letter.
+
+    keep_rest : whether the values before the touch are used, not only what changes.
+    """
+    cells = _checked_cells(touches)
+    place_range = place_range_of(touches)
+    if place_range is not None and not place_range[1] > place_range[0]:
+        raise InputError("place_mm: no place is passed by all touches; cut them alike")
+    courses = courses_of(touches, keep_rest, place_range)
+    progress.stage("learn")
+    kernel, shifts = _aligned_kernel(courses, cells)
+    trust, sure = _trust(courses, shifts, cells, progress)
+    return replace(
+        kernel,
+        about={
+            "softdot_version": installed_version(),
+            "channels": touches.taxels.shape[2],
+            "sampling_Hz": touches.sampling_Hz,
+            "duration_s": touches.duration_s,
+            "place_range_mm": place_range,
+            "rest_kept": keep_rest,
+            "touches_of_cells": {str(cell): int(np.sum(cells == cell)) for cell in np.unique(cells)},
+            "trust": trust,
+            "share_of_dots": share_of_dots(kernel),
+            **sure,
+            "warnings": _warnings(touches, cells),
+        },
+    )
+
+
+def share_of_dots(kernel: LearnedKernel) -> float:
+    """Share of what sets the 64 cells apart, in units of the noise, that is the superposition of courses of dots."""
+    noise = np.linalg.cholesky(kernel.scatter.mean(axis=0))
+    whole = np.linalg.solve(noise, (kernel.mean - kernel.mean.mean(axis=0)).T)
+    missed = np.linalg.solve(noise, (kernel.mean - kernel.dot_mean - (kernel.mean - kernel.dot_mean).mean(axis=0)).T)
+    return float(1.0 - (missed**2).sum() / (whole**2).sum())
+
+
+def _checked_cells(touches: Touches) -> Ints:
+    """The cells (n,) of the touches. InputError where they are too few."""
+    if touches.cells is None:
+        raise InputError("letter is missing: what was touched must be known to learn from it")
+    kinds, counts = np.unique(touches.cells, return_counts=True)
+    if len(kinds) < LEAST_CELLS or counts.min() < LEAST_TOUCHES:
+        raise InputError(
+            f"letter: {len(kinds)} different cells, at least {counts.min()} touches of each: at least {LEAST_CELLS} "
+            f"cells and {LEAST_TOUCHES} touches of each are needed"
+        )
+    if len(dead_channels(touches.taxels)) == touches.taxels.shape[2]:
+        raise InputError("taxels: no channel ever changes")
+    return touches.cells
+
+
+def _warnings(touches: Touches, cells: Ints) -> list[str]:
+    """What limits the kernel: dots that were never touched or never absent, clipped and dead channels."""
+    found = []
+    raised = (cells[:, None] >> np.arange(DOTS) & 1).astype(bool)
+    for dot in range(DOTS):
+        if raised[:, dot].all() or not raised[:, dot].any():
+            found.append(
+                f"dot {dot + 1} is {'' if raised[:, dot].any() else 'not '}raised in all learned cells: it is guessed"
+            )
+    clipped = clipped_channels(touches.taxels)
+    if clipped:
+        told = ", ".join(f"{number} ({100 * share:.0f} %)" for number, share in clipped.items())
+        found.append(f"channels with many values at their least or largest one, clipped perhaps: {told}")
+    dead = dead_channels(touches.taxels)
+    if dead:
+        found.append(f"channels that never change and are left out: {', '.join(map(str, dead))}")
+    return found
+
+
+def _aligned_kernel(courses: Floats, cells: Ints) -> tuple[LearnedKernel, Floats]:
+    """The kernel of touches, and the shifts (n,) in steps by which they come late, found by turns."""
+    shifts = np.zeros(len(courses))
+    kernel = _kernel_of(courses, cells)
+    for _ in range(ALIGNMENTS):
+        by_shift = scores_by_shift(kernel, along_axes(kernel, courses), kernel.mean)
+        own = by_shift[np.arange(len(cells)), :, cells]
+        shifts = np.exp(own - logsumexp(own, axis=1, keepdims=True)) @ kernel.shift_steps
+        shifts -= shifts.mean()
+        kernel = _kernel_of(shift_courses(courses, shifts), cells)
+    return kernel, shifts
+
+
+def _kernel_of(courses: Floats, cells: Ints) -> LearnedKernel:
+    """The kernel of aligned touches (n, t, c), which says nothing about itself yet."""
+    kinds, place, counts = np.unique(cells, return_inverse=True, return_counts=True)
+    weight = _channel_weights(courses, cells)
+    centre = courses.mean(axis=0)
+    flat = ((courses - centre) * weight).reshape(len(courses), -1)
+    degrees = len(courses) - len(kinds)
+    axes = np.linalg.svd(flat, full_matrices=False)[2][: min(MOST_AXES, degrees - 1)].T
+    touches = flat @ axes
+    means = np.array([touches[cells == kind].mean(axis=0) for kind in kinds])
+    residuals = touches - means[place]
+    parts, noise = parts_of_covariance(), (residuals**2).sum(axis=0) / degrees
+    expected = [expect_cells(parts, kinds, one, own / counts) for one, own in zip(means.T, noise, strict=True)]
+    return LearnedKernel(
+        centre=centre,
+        weight=weight,
+        axes=axes.reshape(*centre.shape, -1),
+        mean=np.stack([one.mean for one in expected], axis=1),
+        dot_mean=np.stack([one.dot_mean for one in expected], axis=1),
+        variance=np.stack([one.variance for one in expected], axis=1),
+        scatter=scatter_of_cells(residuals, cells),
+        shift_steps=SHIFTS,
+        about={},
+    )
+
+
+def _channel_weights(courses: Floats, cells: Ints) -> Floats:
+    """One over the noise (c,) of each channel before the dots come; 0 for a dead one."""
+    before = courses[:, : max(1, round(REST_SHARE * STEPS))]
+    kinds, place = np.unique(cells, return_inverse=True)
+    means = np.array([before[cells == kind].mean(axis=0) for kind in kinds])
+    noise = np.sqrt(((before - means[place]) ** 2).mean(axis=(0, 1)))
+    alive = np.ptp(courses, axis=(0, 1)) > 0.0
+    heard = noise[alive & (noise > 0.0)]
+    least = QUIETEST * float(np.median(heard)) if len(heard) else 1.0
+    return np.where(alive, 1.0 / np.maximum(noise, least), 0.0)
+
+
+def _trust(courses: Floats, shifts: Floats, cells: Ints, progress: Progress) -> tuple[float, dict[str, Any]]:
+    """The factor of scores at which probabilities of touches that were left out are most likely, and their rates.
+
+    Cells are left out together, then touches of each cell.
+    """
+    aligned = shift_courses(courses, shifts)
+    random = np.random.default_rng(0)
+    kinds = random.permutation(np.unique(cells))
+    groups = [
+        np.isin(cells, kinds[first : first + LETTERS_LEFT_OUT]) for first in range(0, len(kinds), LETTERS_LEFT_OUT)
+    ]
+    turn = np.array([np.sum(cells[:number] == cell) for number, cell in enumerate(cells)]) % FOLDS_OF_TOUCHES
+    groups += [turn == part for part in range(FOLDS_OF_TOUCHES)]
+    scores, true = [], []
+    for number, out in enumerate(groups):
+        kernel = _kernel_of(aligned[~out], cells[~out])
+        scores.append(scores_of_touches(kernel, along_axes(kernel, courses[out])))
+        true.append(cells[out])
+        progress.step(number + 1, len(groups), "left out")
+    score, cell = np.concatenate(scores), np.concatenate(true)
+    told = [log_softmax(trust * score, axis=1)[np.arange(len(cell)), cell].mean() for trust in TRUST]
+    right = score.argmax(axis=1) == cell
+    unseen = sum(len(one) for one in true[:-FOLDS_OF_TOUCHES])
+    rates = {"cells_left_out_read": float(right[:unseen].mean()), "touches_left_out_read": float(right[unseen:].mean())}
+    return float(TRUST[int(np.argmax(told))]), rates

@@ -1,0 +1,169 @@
+"""A kernel learned from touches: what it reads, what must not change it, and what is refused."""
+
+import csv
+import json
+import shutil
+
+import numpy as np
+import pytest
+
+from softdot.cli import main
+from softdot.progress import Untold
+from softdot.reading.learned_kernel.answers import answer_touches
+from softdot.reading.learned_kernel.kernel_file import load_learned_kernel
+from softdot.reading.learned_kernel.learning import learn_kernel
+from softdot.reading.learned_kernel.touches import Touches, letter_cells, load_touches
+from tests.cases import for_each
+from tests.softdot.reading.made_touches import made_touches
+
+MET, NOT_MET = "abcdefgijlmnpqstuw", "hkorvx"
+
+
+def touches_of(letters, repeats, seed, **more):
+    made = made_touches(letters, repeats, seed)
+    cells = np.array([letter_cells()[str(one)] for one in made["letter"]])
+    return Touches(made["taxels"], made["sampling_Hz"], cells, **more)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    path = tmp_path_factory.mktemp("learned")
+    np.savez(path / "met.npz", **made_touches(MET, 5))
+    np.savez(path / "others.npz", **made_touches(MET[:6] + NOT_MET, 4, seed=1))
+    assert main(["read", "--learn", str(path / "met.npz"), "-q", "-o", str(path / "kernel")]) == 0
+    return path
+
+
+@pytest.fixture(scope="module")
+def kernel(folder):
+    return load_learned_kernel(folder / "kernel")
+
+
+@pytest.fixture(scope="module")
+def usual(kernel):
+    return answer_touches(kernel, touches_of(MET[:6] + NOT_MET, 4, 1), "all").probability
+
+
+def test_letters_are_read_that_were_learned_and_that_were_not(kernel, usual):
+    cells = touches_of(MET[:6] + NOT_MET, 4, 1).cells
+    right = usual.argmax(axis=1) == cells
+    assert right[:24].mean() > 0.9
+    assert right[24:].mean() > 0.6
+    five = touches_of(NOT_MET, 5, 2, together=np.repeat(np.arange(6), 5))
+    together = answer_touches(kernel, five, "all").together
+    assert [count for _, count, _ in together] == [5] * 6
+    assert np.mean([row.argmax() == cell for (_, _, row), cell in zip(together, five.cells[::5], strict=True)]) > 0.8
+
+
+def test_the_files_say_what_was_read(folder, tmp_path, capfd):
+    command = ["read", "--kernel", str(folder / "kernel"), "--recording", str(folder / "others.npz"), "--json", "-q"]
+    assert main([*command, "-o", str(tmp_path / "out")]) == 0
+    told = json.loads(capfd.readouterr().out)
+    assert told == json.loads((tmp_path / "out" / "cells.json").read_text("utf-8"))
+    with (tmp_path / "out" / "cells.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == len(told["touches"]) == 48
+    for row, one in zip(rows, told["touches"], strict=True):
+        assert [row[f"cell_{place}"] for place in range(1, 6)] == [best["cell"] for best in one["best"]]
+        assert one["answer"] == ("?" if one["best"][0]["probability"] < 0.9 else one["best"][0]["cell"])
+        assert row["answer"] == one["answer"]
+    assert told["cells"] == "".join(one["answer"] for one in told["touches"])
+    assert told["score"]["cells"]["right"] == sum(one["best"][0]["cell"] == one["true"] for one in told["touches"])
+
+
+def test_probabilities_do_not_depend_on_the_order_of_touches_or_on_the_resting_values(kernel, usual):
+    asked = touches_of(MET[:6] + NOT_MET, 4, 1)
+    order = np.random.default_rng(3).permutation(len(asked.taxels))
+    np.testing.assert_allclose(answer_touches(kernel, asked.part(order), "all").probability, usual[order], atol=1e-9)
+    raised = Touches(asked.taxels + np.arange(6.0), asked.sampling_Hz)
+    np.testing.assert_allclose(answer_touches(kernel, raised, "all").probability, usual, atol=1e-9)
+
+
+@for_each("change", [lambda x: x[:, :, [3, 0, 5, 1, 4, 2]], lambda x: 1e3 * x], ids=["channels", "units"])
+def test_what_is_done_to_both_recordings_changes_nothing(change, usual):
+    met, asked = touches_of(MET, 5, 0), touches_of(MET[:6] + NOT_MET, 4, 1)
+    kernel = learn_kernel(Touches(change(met.taxels), met.sampling_Hz, met.cells), False, Untold())
+    found = answer_touches(kernel, Touches(change(asked.taxels), asked.sampling_Hz), "all").probability
+    np.testing.assert_allclose(found, usual, atol=2e-3)
+
+
+def refused(arguments, out, capfd):
+    assert main(["read", *map(str, arguments), "-q", "-o", str(out)]) == 2
+    said = capfd.readouterr().err
+    assert said.startswith("softdot: "), said
+    assert said.count("\n") == 1
+    assert not out.exists()
+    return said
+
+
+def test_a_changed_kernel_is_refused(folder, tmp_path, capfd):
+    for name, change in {
+        "kernel.json": lambda data: data.replace(b'"sampling_Hz": 50.0', b'"sampling_Hz": 51.0'),
+        "kernel.npz": lambda data: data[:-40],
+    }.items():
+        changed = tmp_path / f"changed-{name}"
+        shutil.copytree(folder / "kernel", changed)
+        before = (changed / name).read_bytes()
+        (changed / name).write_bytes(change(before))
+        assert (changed / name).read_bytes() != before
+        said = refused(["--kernel", changed, "--recording", folder / "others.npz"], tmp_path / "out", capfd)
+        assert "softdot read --learn" in said
+
+
+def damaged(**changes):
+    return {**made_touches("abcdefgh", 4), **changes}
+
+
+def with_nan():
+    made = made_touches("abcdefgh", 4)
+    made["taxels"][3, 2, 1] = np.nan
+    return made
+
+
+@for_each(
+    "arrays, says",
+    [
+        (with_nan(), "taxels[3, 2, 1]: is not finite"),
+        (damaged(taxels=np.ones((32, 40))), "taxels has the shape (32, 40)"),
+        (damaged(sampling_Hz=0.0), "sampling_Hz must be one number above 0"),
+        (damaged(letter=np.array(["ß"] * 32)), "letter[0] = 'ß'"),
+        (damaged(letter=np.array(["a"] * 31)), "one text for each of the 32 touches"),
+        ({"taxels": made_touches("abcdefgh", 4)["taxels"], "sampling_Hz": 50.0}, "letter is missing"),
+        (made_touches("abcdefgh", 1), "at least"),
+        (made_touches("abc", 9), "at least"),
+        (damaged(place_mm=np.ones((32, 39))), "place_mm has the shape"),
+    ],
+)
+def test_touches_that_nothing_can_be_learned_from_are_one_sentence(arrays, says, tmp_path, capfd):
+    np.savez(tmp_path / "bad.npz", **arrays)
+    assert says in refused(["--learn", tmp_path / "bad.npz"], tmp_path / "out", capfd)
+
+
+def test_recordings_of_another_sensor_are_one_sentence(folder, tmp_path, capfd):
+    made = made_touches("abc", 2)
+    for changes, says in (
+        ({"taxels": made["taxels"][:, :, :5]}, "5 channels, the kernel has 6"),
+        ({"taxels": made["taxels"][:, :30]}, "0.6 s"),
+        ({"sampling_Hz": 5.0}, "s"),
+    ):
+        np.savez(tmp_path / "other.npz", **{**made, **changes})
+        said = refused(["--kernel", folder / "kernel", "--recording", tmp_path / "other.npz"], tmp_path / "out", capfd)
+        assert says in said
+    said = refused(["a text", "--kernel", folder / "kernel"], tmp_path / "out", capfd)
+    assert "text" in said
+    assert "--recording is missing" in refused(["--kernel", folder / "kernel"], tmp_path / "out", capfd)
+    assert "--learn" in refused(["--learn", folder / "met.npz", "--noise-mV", "2"], tmp_path / "out", capfd)
+
+
+def test_another_rate_and_several_files_are_read(folder, kernel, tmp_path, usual):
+    asked = touches_of(MET[:6] + NOT_MET, 4, 1)
+    double = Touches(np.repeat(asked.taxels, 2, axis=1), 2.0 * asked.sampling_Hz)
+    np.testing.assert_allclose(answer_touches(kernel, double, "all").probability, usual, atol=0.1)
+    made = made_touches(MET, 5)
+    for name, rows in (("one", slice(None, 40)), ("two", slice(40, None))):
+        np.savez(tmp_path / name, **{**made, "taxels": made["taxels"][rows], "letter": made["letter"][rows]})
+    files = [str(tmp_path / name) for name in ("one.npz", "two.npz")]
+    assert main(["read", "--learn", *files, "-q", "-o", str(tmp_path / "kernel")]) == 0
+    again = answer_touches(load_learned_kernel(tmp_path / "kernel"), asked, "all").probability
+    np.testing.assert_array_equal(again, usual)
+    assert load_touches(folder / "met.npz").cells.shape == (90,)
