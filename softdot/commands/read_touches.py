@@ -106,7 +106,7 @@ def learned_text(summary: dict[str, Any], output: str) -> str:
             f"{sum(cells.values())} touches of {len(cells)} cells, {summary['channels']} channels, "
             f"resting values {'kept' if summary['rest_kept'] else 'removed'}",
             f"left out while learning and read among all 64: {100 * summary['touches_left_out_read']:.0f} % of touches "
-            f"of learned cells, {100 * summary['cells_left_out_read']:.0f} % of those of cells that were left out whole",
+            f"of learned cells, {100 * summary['cells_left_out_read']:.0f} % of those of cells left out whole",
             f"superposition of dots: {100 * summary['share_of_dots']:.0f} % of what sets cells apart; the rest is "
             "statistics of likeness between cells",
             f"{output}/kernel.json",

@@ -10,7 +10,7 @@ from foundation.errors import InputError
 from softdot.reading.cells import KINDS_OF_CELL
 from softdot.reading.learned_kernel.courses import STEPS, courses_of
 from softdot.reading.learned_kernel.kernel_file import LearnedKernel
-from softdot.reading.learned_kernel.scores import along_axes, scores_of_touches, scores_together
+from softdot.reading.learned_kernel.scores import along_axes, scores_of_touches
 from softdot.reading.learned_kernel.touches import SAME_SHARE, Touches, clipped_channels, letter_cells
 
 
@@ -43,7 +43,7 @@ def answer_touches(kernel: LearnedKernel, touches: Touches, among: str) -> Answe
     together = []
     for number in [] if touches.together is None else np.unique(touches.together):
         rows = np.flatnonzero(touches.together == number)
-        own = scores_together(kernel, moved[rows])
+        own = len(rows) ** -kernel.about["shared_error"] * score[rows].sum(axis=0)
         together.append((int(number), len(rows), softmax(trust * own + barred)))
     return Answers(
         softmax(trust * score + barred, axis=1), score, (dots + barred).argmax(axis=1), together, among,

@@ -24,8 +24,10 @@ LEAST_CELLS, LEAST_TOUCHES = 6, 2
 """Different cells, and touches of each, that are needed."""
 QUIETEST = 0.3
 """Least noise of a channel that is believed, of the median of all."""
-LETTERS_LEFT_OUT, FOLDS_OF_TOUCHES = 3, 4
-"""Cells that are left out together, and parts into which the touches of each cell are cut, to learn how sure to be."""
+CELLS_LEFT_OUT, FOLDS_OF_TOUCHES, TOGETHER = 3, 4, 5
+"""To learn how sure to be: cells that are left out together, parts into which the touches of each cell are cut, and
+touches that are read together.
+"""
 TRUST = np.geomspace(0.02, 2.0, 93)
 """Factors of the scores that are tried."""
 
@@ -42,7 +44,7 @@ def learn_kernel(touches: Touches, keep_rest: bool, progress: Progress) -> Learn
     courses = courses_of(touches, keep_rest, place_range)
     progress.stage("learn")
     kernel, shifts = _aligned_kernel(courses, cells)
-    trust, sure = _trust(courses, shifts, cells, progress)
+    sure = _sureness(*_left_out_scores(courses, shifts, cells, progress))
     return replace(
         kernel,
         about={
@@ -53,7 +55,6 @@ def learn_kernel(touches: Touches, keep_rest: bool, progress: Progress) -> Learn
             "place_range_mm": place_range,
             "rest_kept": keep_rest,
             "touches_of_cells": {str(cell): int(np.sum(cells == cell)) for cell in np.unique(cells)},
-            "trust": trust,
             "share_of_dots": share_of_dots(kernel),
             **sure,
             "warnings": _warnings(touches, cells),
@@ -154,28 +155,48 @@ def _channel_weights(courses: Floats, cells: Ints) -> Floats:
     return np.where(alive, 1.0 / np.maximum(noise, least), 0.0)
 
 
-def _trust(courses: Floats, shifts: Floats, cells: Ints, progress: Progress) -> tuple[float, dict[str, Any]]:
-    """The factor of scores at which probabilities of touches that were left out are most likely, and their rates.
-
-    Cells are left out together, then touches of each cell.
-    """
+def _left_out_scores(courses: Floats, shifts: Floats, cells: Ints, progress: Progress) -> tuple[Any, Any, Any, Any]:
+    """Scores and cells of touches of cells that were left out, then of touches left out while others stayed."""
     aligned = shift_courses(courses, shifts)
-    random = np.random.default_rng(0)
-    kinds = random.permutation(np.unique(cells))
-    groups = [
-        np.isin(cells, kinds[first : first + LETTERS_LEFT_OUT]) for first in range(0, len(kinds), LETTERS_LEFT_OUT)
-    ]
+    kinds = np.random.default_rng(0).permutation(np.unique(cells))
+    apart = [np.isin(cells, kinds[first : first + CELLS_LEFT_OUT]) for first in range(0, len(kinds), CELLS_LEFT_OUT)]
     turn = np.array([np.sum(cells[:number] == cell) for number, cell in enumerate(cells)]) % FOLDS_OF_TOUCHES
-    groups += [turn == part for part in range(FOLDS_OF_TOUCHES)]
-    scores, true = [], []
-    for number, out in enumerate(groups):
+    folds = [*apart, *(turn == part for part in range(FOLDS_OF_TOUCHES))]
+    scores = []
+    for number, out in enumerate(folds):
         kernel = _kernel_of(aligned[~out], cells[~out])
         scores.append(scores_of_touches(kernel, along_axes(kernel, courses[out])))
-        true.append(cells[out])
-        progress.step(number + 1, len(groups), "left out")
-    score, cell = np.concatenate(scores), np.concatenate(true)
-    told = [log_softmax(trust * score, axis=1)[np.arange(len(cell)), cell].mean() for trust in TRUST]
-    right = score.argmax(axis=1) == cell
-    unseen = sum(len(one) for one in true[:-FOLDS_OF_TOUCHES])
-    rates = {"cells_left_out_read": float(right[:unseen].mean()), "touches_left_out_read": float(right[unseen:].mean())}
-    return float(TRUST[int(np.argmax(told))]), rates
+        progress.step(number + 1, len(folds), "left out")
+    count = len(apart)
+    true = [cells[out] for out in folds]
+    return (
+        np.concatenate(scores[:count]), np.concatenate(true[:count]),
+        np.concatenate(scores[count:]), np.concatenate(true[count:]),
+    )  # fmt: skip
+
+
+def _sureness(unseen: Floats, unseen_cells: Ints, seen: Floats, seen_cells: Ints) -> dict[str, Any]:
+    """How sure to be by what was left out: the factor of scores, trust, at which the probabilities of true cells are
+    largest, the exponent by which it falls with the number of touches that are read together, and the rates.
+
+    Touches of one cell share what is not known of that cell, so that five of them say less than five times as much.
+    """
+    trust = _best_trust(np.concatenate([unseen, seen]), np.concatenate([unseen_cells, seen_cells]))
+    fives, five_cells = [], []
+    for cell in np.unique(unseen_cells):
+        own = unseen[unseen_cells == cell]
+        fives += [own[first : first + TOGETHER].sum(axis=0) for first in range(0, len(own) - TOGETHER + 1, TOGETHER)]
+        five_cells += [cell] * (len(own) // TOGETHER)
+    of_five = _best_trust(np.array(fives), np.array(five_cells)) if fives else trust / TOGETHER
+    return {
+        "trust": trust,
+        "shared_error": float(np.clip(np.log(trust / of_five) / np.log(TOGETHER), 0.0, 1.0)),
+        "cells_left_out_read": float((unseen.argmax(axis=1) == unseen_cells).mean()),
+        "touches_left_out_read": float((seen.argmax(axis=1) == seen_cells).mean()),
+    }
+
+
+def _best_trust(score: Floats, cells: Ints) -> float:
+    """Factor of scores (n, 64) at which the true cells (n,) are most probable."""
+    told = [log_softmax(trust * score, axis=1)[np.arange(len(cells)), cells].mean() for trust in TRUST]
+    return float(TRUST[int(np.argmax(told))])

@@ -38,25 +38,6 @@ def scores_of_touches(kernel: LearnedKernel, touches: Floats, by_dots_alone: boo
     return np.asarray(logsumexp(scores_by_shift(kernel, touches, mean), axis=1))
 
 
-def scores_together(kernel: LearnedKernel, touches: Floats) -> Floats:
-    """Scores (64,) of touches (n, s, d) of one cell: what is uncertain of the cell is the same in all of them."""
-    by_shift = scores_by_shift(kernel, touches, kernel.mean)
-    count, size = len(touches), touches.shape[2]
-    shift = _shift_score(kernel)
-    found = np.empty(KINDS_OF_CELL)
-    for cell in range(KINDS_OF_CELL):
-        best = by_shift[:, :, cell].argmax(axis=1)
-        moved = touches[np.arange(count), best]
-        factor = np.linalg.cholesky(kernel.scatter[cell] / count + np.diag(kernel.variance[cell]))
-        away = solve_triangular(factor, moved.mean(axis=0) - kernel.mean[cell], lower=True)
-        inner = np.linalg.cholesky(kernel.scatter[cell])
-        within = (solve_triangular(inner, (moved - moved.mean(axis=0)).T, lower=True) ** 2).sum(axis=0)
-        student = -0.5 * (FREEDOM + size) * np.log1p(away @ away / FREEDOM) - np.log(np.diag(factor)).sum()
-        within_score = -0.5 * within.sum() - (count - 1) * np.log(np.diag(inner)).sum()
-        found[cell] = student + within_score + shift[best].sum()
-    return found
-
-
 def _shift_score(kernel: LearnedKernel) -> Floats:
     """Logarithm (s,) of the prior of each shift, but for a constant."""
     return np.asarray(-0.5 * (kernel.shift_steps / SHIFT_DEVIATION_STEPS) ** 2)

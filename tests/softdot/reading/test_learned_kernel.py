@@ -3,16 +3,18 @@
 import csv
 import json
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from foundation.errors import InputError
 from softdot.cli import main
 from softdot.progress import Untold
 from softdot.reading.learned_kernel.answers import answer_touches
 from softdot.reading.learned_kernel.kernel_file import load_learned_kernel
 from softdot.reading.learned_kernel.learning import learn_kernel
-from softdot.reading.learned_kernel.touches import Touches, letter_cells, load_touches
+from softdot.reading.learned_kernel.touches import Touches, join_touches, letter_cells
 from tests.cases import for_each
 from tests.softdot.reading.made_touches import made_touches
 
@@ -79,11 +81,13 @@ def test_probabilities_do_not_depend_on_the_order_of_touches_or_on_the_resting_v
     np.testing.assert_allclose(answer_touches(kernel, raised, "all").probability, usual, atol=1e-9)
 
 
-@for_each("change", [lambda x: x[:, :, [3, 0, 5, 1, 4, 2]], lambda x: 1e3 * x], ids=["channels", "units"])
-def test_what_is_done_to_both_recordings_changes_nothing(change, usual):
+def test_other_channels_and_units_in_both_recordings_change_nothing(usual):
+    def changed(values):
+        return 1e3 * values[:, :, [3, 0, 5, 1, 4, 2]]
+
     met, asked = touches_of(MET, 5, 0), touches_of(MET[:6] + NOT_MET, 4, 1)
-    kernel = learn_kernel(Touches(change(met.taxels), met.sampling_Hz, met.cells), False, Untold())
-    found = answer_touches(kernel, Touches(change(asked.taxels), asked.sampling_Hz), "all").probability
+    kernel = learn_kernel(Touches(changed(met.taxels), met.sampling_Hz, met.cells), False, Untold())
+    found = answer_touches(kernel, Touches(changed(asked.taxels), asked.sampling_Hz), "all").probability
     np.testing.assert_allclose(found, usual, atol=2e-3)
 
 
@@ -155,15 +159,17 @@ def test_recordings_of_another_sensor_are_one_sentence(folder, tmp_path, capfd):
     assert "--learn" in refused(["--learn", folder / "met.npz", "--noise-mV", "2"], tmp_path / "out", capfd)
 
 
-def test_another_rate_and_several_files_are_read(folder, kernel, tmp_path, usual):
+def test_another_rate_is_read(kernel, usual):
     asked = touches_of(MET[:6] + NOT_MET, 4, 1)
     double = Touches(np.repeat(asked.taxels, 2, axis=1), 2.0 * asked.sampling_Hz)
     np.testing.assert_allclose(answer_touches(kernel, double, "all").probability, usual, atol=0.1)
-    made = made_touches(MET, 5)
-    for name, rows in (("one", slice(None, 40)), ("two", slice(40, None))):
-        np.savez(tmp_path / name, **{**made, "taxels": made["taxels"][rows], "letter": made["letter"][rows]})
-    files = [str(tmp_path / name) for name in ("one.npz", "two.npz")]
-    assert main(["read", "--learn", *files, "-q", "-o", str(tmp_path / "kernel")]) == 0
-    again = answer_touches(load_learned_kernel(tmp_path / "kernel"), asked, "all").probability
-    np.testing.assert_array_equal(again, usual)
-    assert load_touches(folder / "met.npz").cells.shape == (90,)
+
+
+def test_several_files_of_one_sensor_are_one():
+    whole = touches_of(MET, 5, 0)
+    parts = [whole.part(np.arange(40)), whole.part(np.arange(40, 90))]
+    joined = join_touches(parts, ["one.npz", "two.npz"])
+    np.testing.assert_array_equal(joined.taxels, whole.taxels)
+    np.testing.assert_array_equal(joined.cells, whole.cells)
+    with pytest.raises(InputError, match=r"'two\.npz': has 49"):
+        join_touches([parts[0], replace(parts[1], sampling_Hz=49.0)], ["one.npz", "two.npz"])
