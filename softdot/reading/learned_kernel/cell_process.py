@@ -35,10 +35,16 @@ class ExpectedCells:
 def parts_of_covariance() -> Floats:
     """The three parts (3, 64, 64), each of the order of one."""
     dots = (np.arange(KINDS_OF_CELL)[:, None] >> np.arange(DOTS) & 1).astype(float)
-    shared = np.maximum(dots.sum(axis=1), 1.0) ** -LOAD_EXPONENT
+    shared = load_shares(np.arange(KINDS_OF_CELL))
     apart = np.abs(dots[:, None] - dots).sum(axis=2)
     load = np.outer(shared, shared)
     return np.array([np.ones_like(load), dots @ dots.T * load, np.exp(-apart / LIKENESS_DOTS) * load])
+
+
+def load_shares(cells: Ints) -> Floats:
+    """By which the answer to each dot of cells (k,) falls, as dots share the load."""
+    count = (cells[:, None] >> np.arange(DOTS) & 1).sum(axis=1)
+    return np.asarray(np.maximum(count, 1.0) ** -LOAD_EXPONENT)
 
 
 def expect_cells(parts: Floats, cells: Ints, means: Floats, noise: Floats) -> ExpectedCells:

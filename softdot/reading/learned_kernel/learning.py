@@ -9,12 +9,13 @@ from scipy.special import log_softmax, logsumexp
 from foundation.arrays import Floats, Ints
 from foundation.errors import InputError
 from softdot.progress import Progress
-from softdot.reading.cells import DOTS
+from softdot.reading.cells import DOTS, KINDS_OF_CELL
 from softdot.reading.learned_kernel.cell_process import expect_cells, parts_of_covariance
 from softdot.reading.learned_kernel.courses import REST_SHARE, STEPS, courses_of, place_range_of, shift_courses
 from softdot.reading.learned_kernel.kernel_file import LearnedKernel
 from softdot.reading.learned_kernel.scatter import scatter_of_cells
 from softdot.reading.learned_kernel.scores import along_axes, scores_by_shift, scores_of_touches
+from softdot.reading.learned_kernel.superposition import best_lag, superposed_courses
 from softdot.reading.learned_kernel.touches import Touches, clipped_channels, dead_channels
 from softdot.version import installed_version
 
@@ -117,7 +118,7 @@ def _aligned_kernel(courses: Floats, cells: Ints) -> tuple[LearnedKernel, Floats
     return kernel, shifts
 
 
-def _kernel_of(courses: Floats, cells: Ints) -> LearnedKernel:
+def _kernel_of(courses: Floats, cells: Ints, lag: float | None = None) -> LearnedKernel:
     """The kernel of aligned touches (n, t, c), which says nothing about itself yet."""
     kinds, place, counts = np.unique(cells, return_inverse=True, return_counts=True)
     weight = _channel_weights(courses, cells)
@@ -128,18 +129,22 @@ def _kernel_of(courses: Floats, cells: Ints) -> LearnedKernel:
     touches = flat @ axes
     means = np.array([touches[cells == kind].mean(axis=0) for kind in kinds])
     residuals = touches - means[place]
+    mean_courses = np.array([flat[cells == kind].mean(axis=0) for kind in kinds]).reshape(-1, *centre.shape)
+    lag = best_lag(kinds, mean_courses) if lag is None else lag
+    superposed = superposed_courses(kinds, mean_courses, lag).reshape(KINDS_OF_CELL, -1) @ axes
+    missed = means - superposed[kinds]
     parts, noise = parts_of_covariance(), (residuals**2).sum(axis=0) / degrees
-    expected = [expect_cells(parts, kinds, one, own / counts) for one, own in zip(means.T, noise, strict=True)]
+    expected = [expect_cells(parts, kinds, one, own / counts) for one, own in zip(missed.T, noise, strict=True)]
     return LearnedKernel(
         centre=centre,
         weight=weight,
         axes=axes.reshape(*centre.shape, -1),
-        mean=np.stack([one.mean for one in expected], axis=1),
-        dot_mean=np.stack([one.dot_mean for one in expected], axis=1),
+        mean=superposed + np.stack([one.mean for one in expected], axis=1),
+        dot_mean=superposed,
         variance=np.stack([one.variance for one in expected], axis=1),
         scatter=scatter_of_cells(residuals, cells),
         shift_steps=SHIFTS,
-        about={},
+        about={"lag_steps": lag},
     )
 
 
