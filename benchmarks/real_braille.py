@@ -114,7 +114,7 @@ def main() -> None:
     touches = load_touches(data / "open.npz")
     folds = json.loads((data / "folds.json").read_text("utf-8"))
     table = {}
-    for keep_rest in (True, False):
+    for keep_rest in (False, True):
         told = "raw" if keep_rest else "rest removed"
         for name, row in {
             **unseen_letters(touches, folds["inner_folds_unseen"], keep_rest),

@@ -53,7 +53,7 @@ def place_range_of(touches: Touches) -> list[float] | None:
 
 def _over_place(values: Floats, place_mm: Floats, place_range_mm: list[float]) -> Floats:
     """Means (STEPS, c) of one touch in equal parts of the way; parts without a sample lie between the others."""
-    edges = np.linspace(*place_range_mm, STEPS + 1)
+    edges = np.linspace(place_range_mm[0], place_range_mm[1], STEPS + 1)
     part = np.digitize(place_mm, edges) - 1
     middles = 0.5 * (edges[1:] + edges[:-1])
     held = np.array([number for number in range(STEPS) if (part == number).any()])

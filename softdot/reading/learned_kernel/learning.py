@@ -45,7 +45,8 @@ def learn_kernel(touches: Touches, keep_rest: bool, progress: Progress) -> Learn
     courses = courses_of(touches, keep_rest, place_range)
     progress.stage("learn")
     kernel, shifts = _aligned_kernel(courses, cells)
-    sure = _sureness(*_left_out_scores(courses, shifts, cells, progress))
+    lag = kernel.about["lag_steps"]
+    sure = _sureness(*_left_out_scores(courses, shifts, cells, lag, progress))
     return replace(
         kernel,
         about={
@@ -56,6 +57,7 @@ def learn_kernel(touches: Touches, keep_rest: bool, progress: Progress) -> Learn
             "place_range_mm": place_range,
             "rest_kept": keep_rest,
             "touches_of_cells": {str(cell): int(np.sum(cells == cell)) for cell in np.unique(cells)},
+            "lag_steps": lag,
             "share_of_dots": share_of_dots(kernel),
             **sure,
             "warnings": _warnings(touches, cells),
@@ -114,7 +116,7 @@ def _aligned_kernel(courses: Floats, cells: Ints) -> tuple[LearnedKernel, Floats
         own = by_shift[np.arange(len(cells)), :, cells]
         shifts = np.exp(own - logsumexp(own, axis=1, keepdims=True)) @ kernel.shift_steps
         shifts -= shifts.mean()
-        kernel = _kernel_of(shift_courses(courses, shifts), cells)
+        kernel = _kernel_of(shift_courses(courses, shifts), cells, kernel.about["lag_steps"])
     return kernel, shifts
 
 
@@ -160,7 +162,9 @@ def _channel_weights(courses: Floats, cells: Ints) -> Floats:
     return np.where(alive, 1.0 / np.maximum(noise, least), 0.0)
 
 
-def _left_out_scores(courses: Floats, shifts: Floats, cells: Ints, progress: Progress) -> tuple[Any, Any, Any, Any]:
+def _left_out_scores(
+    courses: Floats, shifts: Floats, cells: Ints, lag: float, progress: Progress
+) -> tuple[Any, Any, Any, Any]:
     """Scores and cells of touches of cells that were left out, then of touches left out while others stayed."""
     aligned = shift_courses(courses, shifts)
     kinds = np.random.default_rng(0).permutation(np.unique(cells))
@@ -169,7 +173,7 @@ def _left_out_scores(courses: Floats, shifts: Floats, cells: Ints, progress: Pro
     folds = [*apart, *(turn == part for part in range(FOLDS_OF_TOUCHES))]
     scores = []
     for number, out in enumerate(folds):
-        kernel = _kernel_of(aligned[~out], cells[~out])
+        kernel = _kernel_of(aligned[~out], cells[~out], lag)
         scores.append(scores_of_touches(kernel, along_axes(kernel, courses[out])))
         progress.step(number + 1, len(folds), "left out")
     count = len(apart)

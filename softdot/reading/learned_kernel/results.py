@@ -50,7 +50,7 @@ def _cell_content(probability: Floats) -> dict[str, Any]:
         {"cell": braille([int(cell)]), "letter": letter_of(int(cell)), "probability": float(probability[cell])}
         for cell in order
     ]
-    return {"answer": best[0]["cell"] if best[0]["probability"] >= STATED_AT else UNKNOWN, "best": best}
+    return {"answer": best[0]["cell"] if probability.max() >= STATED_AT else UNKNOWN, "best": best}
 
 
 def _rates(true: Ints, probability: Floats) -> dict[str, Any]:

@@ -36,9 +36,7 @@ def best_lag(cells: Ints, courses: Floats) -> float:
 def superposed_courses(cells: Ints, courses: Floats, lag: float) -> Floats:
     """Courses (64, t, c) of all cells by superposition, after mean courses (k, t, c) of some cells (k,)."""
     length = courses.shape[1]
-    weights = cho_solve(
-        cho_factor(_covariance(cells, length, lag), lower=True), courses.reshape(-1, courses.shape[2])
-    )
+    weights = cho_solve(cho_factor(_covariance(cells, length, lag), lower=True), courses.reshape(-1, courses.shape[2]))
     every = np.arange(KINDS_OF_CELL)
     return np.asarray((_superposed(every, cells, length, lag) @ weights).reshape(len(every), length, -1))
 
