@@ -116,10 +116,10 @@ def main() -> None:
     table = {}
     for keep_rest in (False, True):
         told = "raw" if keep_rest else "rest removed"
-        for name, row in {
-            **unseen_letters(touches, folds["inner_folds_unseen"], keep_rest),
-            **seen_letters(touches, folds["few_shot_train_rows"], keep_rest),
-        }.items():
+        for name, row in (
+            *unseen_letters(touches, folds["inner_folds_unseen"], keep_rest).items(),
+            *seen_letters(touches, folds["few_shot_train_rows"], keep_rest).items(),
+        ):
             table[f"{name}, {told}"] = row
             print(
                 f"{name}, {told}: " + ", ".join(f"{key} {100 * value:.1f} %" for key, value in row.items()), flush=True

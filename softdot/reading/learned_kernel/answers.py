@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import softmax
 
-from foundation.arrays import Floats, Ints
+from foundation.arrays import Bools, Floats, Ints
 from foundation.errors import InputError
 from softdot.reading.cells import KINDS_OF_CELL
 from softdot.reading.learned_kernel.courses import STEPS, courses_of
@@ -16,13 +16,17 @@ from softdot.reading.learned_kernel.touches import SAME_SHARE, Touches, clipped_
 
 @dataclass(frozen=True)
 class Answers:
-    """Probabilities (n, 64) of the cells of touches and their scores; by_dots_alone (n,) : the best cells by
-    superposition alone; together : number, count and probabilities (64,) of touches of one cell.
+    """Probabilities (n, 64) of the cells of touches and their scores.
+
+    by_dots_alone (n,) : the best cells by superposition alone. unlike (n,) : whether a touch agrees less with every
+    cell than any touch did that was left out while learning. together : number, count and probabilities (64,) of
+    touches of one cell.
     """
 
     probability: Floats
     log_score: Floats
     by_dots_alone: Ints
+    unlike: Bools
     together: list[tuple[int, int, Floats]]
     among: str
     warnings: list[str]
@@ -45,10 +49,16 @@ def answer_touches(kernel: LearnedKernel, touches: Touches, among: str) -> Answe
         rows = np.flatnonzero(touches.together == number)
         own = len(rows) ** -kernel.about["shared_error"] * score[rows].sum(axis=0)
         together.append((int(number), len(rows), softmax(trust * own + barred)))
+    unlike = score.max(axis=1) < kernel.about["least_score"]
     return Answers(
-        softmax(trust * score + barred, axis=1), score, (dots + barred).argmax(axis=1), together, among,
-        _warnings(touches),
-    )  # fmt: skip
+        probability=softmax(trust * score + barred, axis=1),
+        log_score=score,
+        by_dots_alone=(dots + barred).argmax(axis=1),
+        unlike=unlike,
+        together=together,
+        among=among,
+        warnings=_warnings(touches, int(unlike.sum())),
+    )
 
 
 def _barred(kernel: LearnedKernel, among: str) -> Floats:
@@ -81,9 +91,16 @@ def _refuse_others(kernel: LearnedKernel, touches: Touches) -> None:
         )
 
 
-def _warnings(touches: Touches) -> list[str]:
+def _warnings(touches: Touches, unlike: int) -> list[str]:
+    """Clipped channels, and how many touches are unlike all that were learned."""
+    found = []
     clipped = clipped_channels(touches.taxels)
-    if not clipped:
-        return []
-    told = ", ".join(f"{number} ({100 * share:.0f} %)" for number, share in clipped.items())
-    return [f"channels with many values at their least or largest one, clipped perhaps: {told}"]
+    if clipped:
+        told = ", ".join(f"{number} ({100 * share:.0f} %)" for number, share in clipped.items())
+        found.append(f"channels with many values at their least or largest one, clipped perhaps: {told}")
+    if unlike:
+        found.append(
+            f"{unlike} of {len(touches.taxels)} touches are unlike all that were learned, '?' whatever their best cell: "
+            "no Braille, another way over it, or other units"
+        )
+    return found

@@ -127,7 +127,7 @@ def _kernel_of(courses: Floats, cells: Ints, lag: float | None = None) -> Learne
     centre = courses.mean(axis=0)
     flat = ((courses - centre) * weight).reshape(len(courses), -1)
     degrees = len(courses) - len(kinds)
-    axes = np.linalg.svd(flat, full_matrices=False)[2][: min(MOST_AXES, degrees - 1)].T
+    axes = np.linalg.svd(flat, full_matrices=False)[2][: min(MOST_AXES, max(1, degrees - 1))].T
     touches = flat @ axes
     means = np.array([touches[cells == kind].mean(axis=0) for kind in kinds])
     residuals = touches - means[place]
@@ -169,7 +169,8 @@ def _left_out_scores(
     aligned = shift_courses(courses, shifts)
     kinds = np.random.default_rng(0).permutation(np.unique(cells))
     apart = [np.isin(cells, kinds[first : first + CELLS_LEFT_OUT]) for first in range(0, len(kinds), CELLS_LEFT_OUT)]
-    turn = np.array([np.sum(cells[:number] == cell) for number, cell in enumerate(cells)]) % FOLDS_OF_TOUCHES
+    turn = np.array([np.sum(cells[:number] == cell) for number, cell in enumerate(cells)])
+    turn = (turn + np.searchsorted(np.unique(cells), cells)) % FOLDS_OF_TOUCHES  # of two touches never all first ones
     folds = [*apart, *(turn == part for part in range(FOLDS_OF_TOUCHES))]
     scores = []
     for number, out in enumerate(folds):
@@ -200,6 +201,7 @@ def _sureness(unseen: Floats, unseen_cells: Ints, seen: Floats, seen_cells: Ints
     return {
         "trust": trust,
         "shared_error": float(np.clip(np.log(trust / of_five) / np.log(TOGETHER), 0.0, 1.0)),
+        "least_score": float(min(unseen.max(axis=1).min(), seen.max(axis=1).min())),
         "cells_left_out_read": float((unseen.argmax(axis=1) == unseen_cells).mean()),
         "touches_left_out_read": float((seen.argmax(axis=1) == seen_cells).mean()),
     }

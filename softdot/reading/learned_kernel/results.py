@@ -20,7 +20,12 @@ UNKNOWN = "?"
 
 def answers_content(kernel: LearnedKernel, touches: Touches, answers: Answers) -> dict[str, Any]:
     """The answer to each touch, the rates where the letters are known, and what the kernel says of itself."""
-    rows = [_touch_content(number, row) for number, row in enumerate(answers.probability)]
+    rows = [
+        {"touch": number, **_cell_content(row), "unlike": bool(unlike)}
+        for number, (row, unlike) in enumerate(zip(answers.probability, answers.unlike, strict=True))
+    ]
+    for row in rows:
+        row["answer"] = UNKNOWN if row["unlike"] else row["answer"]
     if touches.cells is not None:
         for row, cell in zip(rows, touches.cells, strict=True):
             row["true"] = braille([int(cell)])
@@ -37,10 +42,6 @@ def answers_content(kernel: LearnedKernel, touches: Touches, answers: Answers) -
         "kernel": kernel.about,
         "warnings": answers.warnings,
     }
-
-
-def _touch_content(number: int, probability: Floats) -> dict[str, Any]:
-    return {"touch": number, **_cell_content(probability)}
 
 
 def _cell_content(probability: Floats) -> dict[str, Any]:

@@ -39,12 +39,17 @@ class Touches:
     @property
     def duration_s(self) -> float:
         """Time that a touch lasts."""
-        return self.taxels.shape[1] / self.sampling_Hz
+        return float(self.taxels.shape[1] / self.sampling_Hz)
 
     def part(self, rows: Ints) -> "Touches":
         """Some of the touches."""
-        own = {name: getattr(self, name) for name in ("taxels", "cells", "place_mm", "together")}
-        return replace(self, **{name: None if value is None else value[rows] for name, value in own.items()})
+        return replace(
+            self,
+            taxels=self.taxels[rows],
+            cells=None if self.cells is None else self.cells[rows],
+            place_mm=None if self.place_mm is None else self.place_mm[rows],
+            together=None if self.together is None else self.together[rows],
+        )
 
 
 def load_touches(path: Path) -> Touches:

@@ -165,6 +165,17 @@ def test_another_rate_is_read(kernel, usual):
     np.testing.assert_allclose(answer_touches(kernel, double, "all").probability, usual, atol=0.1)
 
 
+def test_what_is_no_braille_is_never_a_cell(folder, tmp_path, capfd):
+    made = made_touches("abcdef", 4)
+    made["taxels"] = 3.0 + np.random.default_rng(5).standard_normal(made["taxels"].shape).cumsum(axis=1)
+    np.savez(tmp_path / "noise.npz", **made)
+    command = ["read", "--kernel", str(folder / "kernel"), "--recording", str(tmp_path / "noise.npz"), "--json", "-q"]
+    assert main([*command, "-o", str(tmp_path / "out")]) == 0
+    told, said = capfd.readouterr()
+    assert json.loads(told)["cells"] == "?" * 24
+    assert "24 of 24 touches are unlike all that were learned" in said
+
+
 def test_several_files_of_one_sensor_are_one():
     whole = touches_of(MET, 5, 0)
     parts = [whole.part(np.arange(40)), whole.part(np.arange(40, 90))]
