@@ -100,7 +100,7 @@ def _warnings(touches: Touches, unlike: int) -> list[str]:
         found.append(f"channels with many values at their least or largest one, clipped perhaps: {told}")
     if unlike:
         found.append(
-            f"{unlike} of {len(touches.taxels)} touches are unlike all that were learned, '?' whatever their best cell: "
+            f"{unlike} of {len(touches.taxels)} touches are unlike all that were learned, so '?' for them: "
             "no Braille, another way over it, or other units"
         )
     return found

@@ -93,10 +93,9 @@ def _warnings(touches: Touches, cells: Ints) -> list[str]:
     found = []
     raised = (cells[:, None] >> np.arange(DOTS) & 1).astype(bool)
     for dot in range(DOTS):
-        if raised[:, dot].all() or not raised[:, dot].any():
-            found.append(
-                f"dot {dot + 1} is {'' if raised[:, dot].any() else 'not '}raised in all learned cells: it is guessed"
-            )
+        share = raised[:, dot].mean()
+        if share in (0.0, 1.0):
+            found.append(f"dot {dot + 1} is raised in {'all' if share else 'none'} of the learned cells: it is guessed")
     clipped = clipped_channels(touches.taxels)
     if clipped:
         told = ", ".join(f"{number} ({100 * share:.0f} %)" for number, share in clipped.items())
@@ -116,7 +115,7 @@ def _aligned_kernel(courses: Floats, cells: Ints) -> tuple[LearnedKernel, Floats
         own = by_shift[np.arange(len(cells)), :, cells]
         shifts = np.exp(own - logsumexp(own, axis=1, keepdims=True)) @ kernel.shift_steps
         shifts -= shifts.mean()
-        kernel = _kernel_of(shift_courses(courses, shifts), cells, kernel.about["lag_steps"])
+        kernel = _kernel_of(shift_courses(courses, shifts), cells)
     return kernel, shifts
 
 
