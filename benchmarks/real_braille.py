@@ -52,20 +52,17 @@ def calibration(probability: Any, cells: Any, bins: int = 10) -> dict[str, float
     }
 
 
-def rates(tally: Tally, learned: Any = None) -> dict[str, float]:
+def rates(tally: Tally) -> dict[str, float]:
     """Shares of letters, of cells and of dots that are right, and the calibration."""
     probability, cells = np.array(tally.probability), np.array(tally.cells)
     letters = np.array(sorted(letter_cells().values()))
     first = probability.argmax(axis=1)
-    found = {
+    return {
         "letters": float(np.mean(letters[probability[:, letters].argmax(axis=1)] == cells)),
         "cells": float(np.mean(first == cells)),
         "dots": float(np.mean((first ^ cells)[:, None] >> np.arange(DOTS) & 1 == 0)),
         **calibration(probability, cells),
     }
-    if learned is not None:
-        found["learned"] = float(np.mean(learned[probability[:, learned].argmax(axis=1)] == cells))
-    return found
 
 
 def unseen_letters(touches: Touches, folds: list[list[str]], keep_rest: bool) -> dict[str, dict[str, float]]:
@@ -102,7 +99,9 @@ def seen_letters(touches: Touches, rows_by_count: dict[str, list[int]], keep_res
         asked = touches.part(np.setdiff1d(np.arange(len(touches.taxels)), rows))
         tally = Tally([], [])
         tally.add(answer_touches(kernel, asked, "all").probability, asked.cells)
-        found[f"seen letters, {count} learned of each"] = rates(tally, kernel.learned_cells)
+        found[f"seen letters, {count} learned of each"] = rates(tally)
+        among = answer_touches(kernel, asked, "learned").probability
+        found[f"seen letters, {count} learned of each, among learned"] = rates(Tally([*among], [*asked.cells]))
     return found
 
 

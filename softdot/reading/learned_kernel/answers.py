@@ -15,7 +15,7 @@ from softdot.reading.learned_kernel.touches import SAME_SHARE, Touches, clipped_
 
 
 @dataclass(frozen=True)
-class Answers:
+class TouchAnswers:
     """Probabilities (n, 64) of the cells of touches and their scores.
 
     by_dots_alone (n,) : the best cells by superposition alone. unlike (n,) : whether a touch agrees less with every
@@ -32,7 +32,7 @@ class Answers:
     warnings: list[str]
 
 
-def answer_touches(kernel: LearnedKernel, touches: Touches, among: str) -> Answers:
+def answer_touches(kernel: LearnedKernel, touches: Touches, among: str) -> TouchAnswers:
     """Answer touches of the sensor of the kernel. InputError for those of another one.
 
     among : the cells that may be, "all" 64, "letters" with the blank, or those "learned".
@@ -43,14 +43,14 @@ def answer_touches(kernel: LearnedKernel, touches: Touches, among: str) -> Answe
     barred = _barred(kernel, among)
     score = scores_of_touches(kernel, moved)
     dots = scores_of_touches(kernel, moved, by_dots_alone=True)
-    trust = kernel.about["trust"]
+    trust = kernel.about["trust_among_learned" if among == "learned" else "trust"]
     together = []
     for number in [] if touches.together is None else np.unique(touches.together):
         rows = np.flatnonzero(touches.together == number)
         own = len(rows) ** -kernel.about["shared_error"] * score[rows].sum(axis=0)
         together.append((int(number), len(rows), softmax(trust * own + barred)))
     unlike = score.max(axis=1) < kernel.about["least_score"]
-    return Answers(
+    return TouchAnswers(
         probability=softmax(trust * score + barred, axis=1),
         log_score=score,
         by_dots_alone=(dots + barred).argmax(axis=1),

@@ -46,7 +46,7 @@ def learn_kernel(touches: Touches, keep_rest: bool, progress: Progress) -> Learn
     progress.stage("learn")
     kernel, shifts = _aligned_kernel(courses, cells)
     lag = kernel.about["lag_steps"]
-    sure = _sureness(*_left_out_scores(courses, shifts, cells, lag, progress))
+    sure = _sureness(*_left_out_scores(courses, shifts, cells, lag, progress), np.unique(cells))
     return replace(
         kernel,
         about={
@@ -184,7 +184,7 @@ def _left_out_scores(
     )  # fmt: skip
 
 
-def _sureness(unseen: Floats, unseen_cells: Ints, seen: Floats, seen_cells: Ints) -> dict[str, Any]:
+def _sureness(unseen: Floats, unseen_cells: Ints, seen: Floats, seen_cells: Ints, learned: Ints) -> dict[str, Any]:
     """How sure to be by what was left out: the factor of scores, trust, at which the probabilities of true cells are
     largest, the exponent by which it falls with the number of touches that are read together, and the rates.
 
@@ -199,6 +199,7 @@ def _sureness(unseen: Floats, unseen_cells: Ints, seen: Floats, seen_cells: Ints
     of_five = _best_trust(np.array(fives), np.array(five_cells)) if fives else trust / TOGETHER
     return {
         "trust": trust,
+        "trust_among_learned": _best_trust(seen[:, learned], np.searchsorted(learned, seen_cells)),
         "shared_error": float(np.clip(np.log(trust / of_five) / np.log(TOGETHER), 0.0, 1.0)),
         "least_score": float(min(unseen.max(axis=1).min(), seen.max(axis=1).min())),
         "cells_left_out_read": float((unseen.argmax(axis=1) == unseen_cells).mean()),
@@ -207,6 +208,6 @@ def _sureness(unseen: Floats, unseen_cells: Ints, seen: Floats, seen_cells: Ints
 
 
 def _best_trust(score: Floats, cells: Ints) -> float:
-    """Factor of scores (n, 64) at which the true cells (n,) are most probable."""
+    """Factor of scores (n, k) of k cells at which the true ones (n,) are most probable."""
     told = [log_softmax(trust * score, axis=1)[np.arange(len(cells)), cells].mean() for trust in TRUST]
     return float(TRUST[int(np.argmax(told))])

@@ -9,7 +9,7 @@ import numpy as np
 from diagnose.statistics.proportions import wilson_interval
 from foundation.arrays import Bools, Floats, Ints
 from softdot.reading.cells import DOTS, braille
-from softdot.reading.learned_kernel.answers import Answers
+from softdot.reading.learned_kernel.answers import TouchAnswers
 from softdot.reading.learned_kernel.kernel_file import LearnedKernel
 from softdot.reading.learned_kernel.touches import Touches, letter_of
 
@@ -18,7 +18,7 @@ BEST_CELLS, STATED_AT = 5, 0.9
 UNKNOWN = "?"
 
 
-def answers_content(kernel: LearnedKernel, touches: Touches, answers: Answers) -> dict[str, Any]:
+def answers_content(kernel: LearnedKernel, touches: Touches, answers: TouchAnswers) -> dict[str, Any]:
     """The answer to each touch, the rates where the letters are known, and what the kernel says of itself."""
     rows = [
         {"touch": number, **_cell_content(row), "unlike": bool(unlike)}
