@@ -13,6 +13,9 @@ from softdot.reading.learned_kernel.kernel_file import LearnedKernel
 from softdot.reading.learned_kernel.scores import along_axes, scores_of_touches
 from softdot.reading.learned_kernel.touches import SAME_SHARE, Touches, clipped_channels, letter_cells
 
+PLACE_SHARE = 0.1
+"""Of the learned way: by which a touch may begin later or end earlier."""
+
 
 @dataclass(frozen=True)
 class TouchAnswers:
@@ -79,6 +82,14 @@ def _refuse_others(kernel: LearnedKernel, touches: Touches) -> None:
     if kernel.about["place_range_mm"] is not None:
         if touches.place_mm is None:
             raise InputError("place_mm is missing: the kernel was learned over places")
+        start, end = kernel.about["place_range_mm"]
+        spare = PLACE_SHARE * (end - start)
+        short = (touches.place_mm.min(axis=1) > start + spare) | (touches.place_mm.max(axis=1) < end - spare)
+        if short.any():
+            raise InputError(
+                f"place_mm[{int(np.argmax(short))}]: does not pass the places from {start:.4g} to {end:.4g} mm "
+                "that were learned"
+            )
         return
     if abs(touches.duration_s - duration) > max(SAME_SHARE * duration, 1.0 / touches.sampling_Hz):
         raise InputError(

@@ -176,6 +176,19 @@ def test_what_is_no_braille_is_never_a_cell(folder, tmp_path, capfd):
     assert "24 of 24 touches are unlike all that were learned" in said
 
 
+def test_touches_are_compared_over_the_place_where_it_was_measured():
+    def placed(seed):
+        touches = touches_of(MET[:12], 4, seed)
+        return replace(touches, place_mm=np.tile(np.linspace(0.0, 10.0, 40), (48, 1)))
+
+    kernel, asked = learn_kernel(placed(0), False, Untold()), placed(1)
+    assert np.mean(answer_touches(kernel, asked, "all").probability.argmax(axis=1) == asked.cells) > 0.9
+    with pytest.raises(InputError, match="place_mm is missing"):
+        answer_touches(kernel, replace(asked, place_mm=None), "all")
+    with pytest.raises(InputError, match="from 0 to 10 mm"):
+        answer_touches(kernel, replace(asked, place_mm=asked.place_mm + 5.0), "all")
+
+
 def test_several_files_of_one_sensor_are_one():
     whole = touches_of(MET, 5, 0)
     parts = [whole.part(np.arange(40)), whole.part(np.arange(40, 90))]
