@@ -20,7 +20,23 @@ READING_OPTIONS = (
     ("missing", "SHARE", "share of the dots that are missing, 0 by default"),
     ("sampling-Hz", "HZ", "samples a second, 500 by default"),
     ("noise-mV", "MV", "white noise of each sample, 1 by default"),
-    ("hum-mV", "MV", "amplitude of hum at 50 Hz, 0 by default"),
+    ("hum-mV", "MV", "amplitude of hum, 0 by default"),
+    ("hum-Hz", "HZ", "its frequency, 50 by default"),
+    ("hum-drift-Hz", "HZ", "standard deviation of its frequency, which drifts in 2 s, 0 by default"),
+    ("hum-third", "SHARE", "amplitude of its third harmonic over its own, 0 by default"),
+    ("drift-mV", "MV", "standard deviation of a voltage of each channel that drifts in 10 s, 0 by default"),
+    ("speed-cv", "SHARE", "standard deviation of the logarithm of the speed, 0 by default"),
+    ("speed-time-s", "S", "its correlation time, 0.5 by default"),
+    ("pauses", "N", "pauses of 0.3 to 1.5 s in the line, 0 by default"),
+    ("ways-back", "N", "ways back of 3 to 10 mm in the line, 0 by default"),
+    ("wander-mm", "MM", "standard deviation of a slow wander across the line, 0 by default"),
+    ("skew-deg", "DEG", "of the path against the line, 0 by default"),
+    ("contact-losses", "N", "how often contact is lost in the line, 0 by default"),
+    ("contact-loss-s", "S", "how long, 0.2 by default"),
+    ("gain-scatter", "SHARE", "largest deviation of the gain of a channel, 0 by default"),
+    ("dead-channel", "N", "number of a channel that gives noise alone"),
+    ("swapped-channel", "N", "number of a channel that is exchanged with the next one"),
+    ("reversed-channel", "N", "number of a channel whose polarity is turned"),
     ("press-s", "S", "with --mode press: time to go down, and up, 0.2 by default"),
     ("hold-s", "S", "with --mode press: time between them, 0.2 by default"),
 )
@@ -48,6 +64,9 @@ def add_read(commands: Any) -> None:
     read.add_argument("--mode", choices=("slide", "press"), help="slide along the line, or press cell by cell")
     for name, unit, meaning in READING_OPTIONS:
         read.add_argument(f"--{name}", type=float, metavar=unit, help=meaning)
+    read.add_argument("--leftward", action="store_true", default=None, help="the array moves from right to left")
+    read.add_argument("--reversed-all", action="store_true", default=None, help="the polarity of all channels is turned")
+    read.add_argument("--preset", choices=("machine", "hand"), help="conditions of a machine (default) or a hand")
     read.add_argument("--seed", type=int, metavar="N", help="of scatter, tremor and noise, 0 by default")
     read.add_argument(
         "--decoders",

@@ -110,6 +110,8 @@ def command(chosen: Namespace) -> int:
     if chosen.study or chosen.conditions is not None:
         return _study_conditions(chosen, config)
     recording = None if chosen.recording is None else Path(chosen.recording)
+    if recording is not None and chosen.preset is not None:
+        raise InputError(f"--preset = '{chosen.preset}': acts only on voltages that are simulated; leave it out")
     refuse_idle(conditions_of(chosen), _stated_conditions(chosen), recording is not None)
     with only_the_summary_on_stdout(), progress_of(chosen) as progress:
         summary = run_read(
@@ -117,7 +119,7 @@ def command(chosen: Namespace) -> int:
             chosen.decoders, recording, progress,
         )  # fmt: skip
     show(summary, chosen, short_text)
-    return GOOD
+    return GOOD if summary["is_certain"] else NOT_CONVERGED
 
 
 def _study_conditions(chosen: Namespace, config: Config | None) -> int:
@@ -202,7 +204,7 @@ def conditions_of(chosen: Namespace) -> ReadingConditions:
     """The conditions of the command line, those that it does not state with their defaults. InputError."""
     from softdot.reading.conditions import ReadingConditions
 
-    return ReadingConditions(**_stated_conditions(chosen))
+    return ReadingConditions(**{**_preset(chosen), **_stated_conditions(chosen)})
 
 
 def _stated_conditions(chosen: Namespace) -> dict[str, Any]:
@@ -213,6 +215,13 @@ def _stated_conditions(chosen: Namespace) -> dict[str, Any]:
 
     given = {one.name: getattr(chosen, one.name, None) for one in fields(ReadingConditions)}
     return {name: value for name, value in given.items() if value is not None}
+
+
+def _preset(chosen: Namespace) -> dict[str, Any]:
+    """The conditions of the preset that the command line names."""
+    from softdot.reading.conditions import PRESETS
+
+    return dict(PRESETS[getattr(chosen, "preset", None) or "machine"])
 
 
 def short_text(summary: dict[str, Any], output: str) -> str:

@@ -15,6 +15,8 @@ from softdot.braille_text.liblouis import INSTALL_ADVICE, liblouis, louis_cells
 
 MOST_CELLS = 20_000
 """Longest line, in cells."""
+UNKNOWN = "?"
+"""A cell that is not known."""
 DOTS, KINDS_OF_CELL = 6, 64
 """Dots of a cell, and number of different cells."""
 
@@ -38,13 +40,22 @@ def cells_of(text: str, table: str | None = None) -> Ints:
 
 
 def braille(cells: Sequence[int] | Ints) -> str:
-    """Cells (c,) as characters of Unicode Braille."""
-    return "".join(chr(FIRST_CELL + int(cell)) for cell in cells)
+    """Cells (c,) as characters of Unicode Braille; below 0 is one that is not known, a question mark."""
+    return "".join(chr(FIRST_CELL + int(cell)) if cell >= 0 else UNKNOWN for cell in cells)
 
 
 def text_of(cells: Sequence[int] | Ints, table: str | None = None) -> str:
-    """The text of cells (c,); where liblouis is needed and missing, or fails, the cells themselves."""
+    """The text of cells (c,); where liblouis is needed and missing, or fails, the cells themselves.
+
+    A cell below 0 is not known, a question mark; the text goes on behind it as at a new beginning.
+    """
+    return UNKNOWN.join(_text_of_known(part, table) for part in braille(cells).split(UNKNOWN))
+
+
+def _text_of_known(cells: str, table: str | None) -> str:
+    if not cells:
+        return ""
     if table is None:
-        return english_text(braille(cells))
+        return english_text(cells)
     found = liblouis()
-    return braille(cells) if found is None else back_translate(found.called_by, braille(cells), table)
+    return cells if found is None else back_translate(found.called_by, cells, table)

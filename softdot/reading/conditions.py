@@ -39,10 +39,46 @@ BOUNDS: dict[str, tuple[float, float]] = {
     "noise_mV": (0.0, 1e6),
     "hum_mV": (0.0, 1e6),
     "sampling_Hz": (50.0, 1e5),
+    "speed_cv": (0.0, 1.0),
+    "speed_time_s": (0.05, 60.0),
+    "pauses": (0.0, 100.0),
+    "ways_back": (0.0, 100.0),
+    "wander_mm": (0.0, 2.0),
+    "skew_deg": (-5.0, 5.0),
+    "contact_losses": (0.0, 100.0),
+    "contact_loss_s": (0.02, 10.0),
+    "hum_Hz": (5.0, 1000.0),
+    "hum_drift_Hz": (0.0, 5.0),
+    "hum_third": (0.0, 1.0),
+    "drift_mV": (0.0, 1e4),
+    "gain_scatter": (0.0, 0.9),
+    "dead_channel": (0.0, 1000.0),
+    "swapped_channel": (0.0, 1000.0),
+    "reversed_channel": (0.0, 1000.0),
     "press_s": (1e-3, 60.0),
     "hold_s": (0.0, 60.0),
 }
 """Condition -> its least and largest value."""
+CHANNELS = ("dead_channel", "swapped_channel", "reversed_channel")
+"""Conditions that number a channel."""
+WHOLE = ("pauses", "ways_back", "contact_losses", *CHANNELS)
+"""Conditions that count or number something."""
+HAND: dict[str, float] = {
+    "speed_mm_per_s": 40.0,
+    "speed_cv": 0.2,
+    "speed_time_s": 0.5,
+    "pauses": 1.0,
+    "ways_back": 1.0,
+    "wander_mm": 0.3,
+    "skew_deg": 0.5,
+    "hum_mV": 5.0,
+    "hum_Hz": 49.97,
+    "hum_drift_Hz": 0.02,
+    "hum_third": 0.1,
+    "gain_scatter": 0.1,
+}
+"""Conditions of a hand that holds the array, all of them assumed; those of a machine are the defaults."""
+PRESETS: dict[str, dict[str, float]] = {"machine": {}, "hand": HAND}
 
 
 @dataclass(frozen=True)
@@ -50,8 +86,11 @@ class ReadingConditions:
     """The conditions of reading a line; None stands for the value that kernel or standard imply.
 
     depth_mm or force_N : depth of nominal dots below the resting top, or force on all dots. height_mm : of all dots,
-    which are deeper by its excess over the nominal one. worn, missing : shares of the dots. hum_mV : amplitude of 50
-    Hz.
+    which are deeper by its excess over the nominal one. worn, missing : shares of the dots. speed_cv, speed_time_s :
+    standard deviation of the logarithm of the speed, and its correlation time. pauses, ways_back, contact_losses :
+    their number in the line. skew_deg : angle of the path with the line. hum_mV : amplitude; hum_third : of its third
+    harmonic over it. drift_mV : standard deviation of a slow voltage. dead_channel, swapped_channel (with the next
+    one), reversed_channel : numbers from 1, 0 for none. leftward : from right to left.
     """
 
     standard: str | None = None
@@ -72,6 +111,24 @@ class ReadingConditions:
     sampling_Hz: float = 500.0
     noise_mV: float = 1.0
     hum_mV: float = 0.0
+    speed_cv: float = 0.0
+    speed_time_s: float = 0.5
+    pauses: float = 0.0
+    ways_back: float = 0.0
+    wander_mm: float = 0.0
+    skew_deg: float = 0.0
+    contact_losses: float = 0.0
+    contact_loss_s: float = 0.2
+    hum_Hz: float = 50.0
+    hum_drift_Hz: float = 0.0
+    hum_third: float = 0.0
+    drift_mV: float = 0.0
+    gain_scatter: float = 0.0
+    dead_channel: float = 0.0
+    swapped_channel: float = 0.0
+    reversed_channel: float = 0.0
+    reversed_all: bool = False
+    leftward: bool = False
     press_s: float = 0.2
     hold_s: float = 0.2
     seed: int = 0
@@ -84,6 +141,11 @@ class ReadingConditions:
                 raise InputError(f"{option_name(name)} = {value:g}: must be from {low:g} to {high:g}")
         if self.seed < 0:
             raise InputError(f"--seed = {self.seed}: must be at least 0")
+        for name in WHOLE:
+            if getattr(self, name) != round(getattr(self, name)):
+                raise InputError(f"{option_name(name)} = {getattr(self, name):g}: must be a whole number")
+        if self.force_N is not None and self.contact_losses:
+            raise InputError(f"--contact-losses = {self.contact_losses:g}: a held force keeps contact; give --depth-mm")
         if self.force_N is not None and self.mode == "press":
             raise InputError(f"--force-N = {self.force_N:g}: --mode press is driven by its depth; give --depth-mm")
 
@@ -123,6 +185,11 @@ class ReadingConditions:
 
 PRESS_TIMES = ("press_s", "hold_s")
 """Conditions of --mode press alone."""
+SLIDE_CONDITIONS = (
+    "speed_cv", "pauses", "ways_back", "wander_mm", "skew_deg", "contact_losses", "leftward",
+)  # fmt: skip
+"""Conditions of --mode slide alone."""
+HUM = ("hum_Hz", "hum_drift_Hz", "hum_third")
 RECORDING_CONDITIONS = ("standard", "mode", *PRESS_TIMES, "speed_mm_per_s")
 """Conditions that the decoders of a recording are told; the speed only of presses, where it gives the time of the
 next.
@@ -136,12 +203,23 @@ def refuse_idle(conditions: ReadingConditions, stated: Iterable[str], is_recorde
         **(dict.fromkeys(PRESS_TIMES, "with --mode press") if slides else {}),
         **({"tremor_Hz": "with --tremor-um above 0"} if conditions.tremor_um == 0.0 else {}),
         **({"wear_mm": "with --worn above 0"} if conditions.worn == 0.0 else {}),
+        **({"speed_time_s": "with --speed-cv above 0"} if conditions.speed_cv == 0.0 else {}),
+        **({"contact_loss_s": "with --contact-losses above 0"} if conditions.contact_losses == 0.0 else {}),
+        **(dict.fromkeys(HUM, "with --hum-mV above 0") if conditions.hum_mV == 0.0 else {}),
+        **({} if slides else dict.fromkeys(SLIDE_CONDITIONS, "with --mode slide")),
     }
     for name in stated:
         if is_recorded and (name not in RECORDING_CONDITIONS or (slides and name == "speed_mm_per_s")):
             idle[name] = "on voltages that are simulated, and here --recording has its own"
         if name in idle:
             raise InputError(f"{option_name(name)} = {getattr(conditions, name)}: acts only {idle[name]}; leave it out")
+
+
+def refuse_missing_channels(conditions: ReadingConditions, channels: int) -> None:
+    """InputError for a condition of a channel that the array does not have."""
+    for name in CHANNELS:
+        if getattr(conditions, name) > channels:
+            raise InputError(f"{option_name(name)} = {getattr(conditions, name):g}: the array has {channels} channels")
 
 
 def option_name(name: str) -> str:

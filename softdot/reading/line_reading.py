@@ -11,15 +11,16 @@ from foundation.errors import InputError
 from softdot.arrays.kernel import ArrayKernel
 from softdot.progress import Progress
 from softdot.reading.cells import braille, text_of
-from softdot.reading.conditions import ReadingConditions, standard_of, standard_warnings
+from softdot.reading.conditions import ReadingConditions, refuse_missing_channels, standard_of, standard_warnings
 from softdot.reading.decoders import DECODERS, decoder_input
-from softdot.reading.decoders.fitted import Track
 from softdot.reading.decoders.model import DecodedCells
 from softdot.reading.decoders.pressing import PressedCells
+from softdot.reading.decoders.track import Track
 from softdot.reading.kernels import electronics_of
 from softdot.reading.line import DotLine, cell_pitch_mm, manufactured_line
 from softdot.reading.motion import ArrayPath, array_path, press_times
 from softdot.reading.score import scores
+from softdot.reading.told_line import cell_content, line_content, track_warnings
 from softdot.reading.voltages import Reader, Voltages, record_voltages
 from solve.model import Readout
 
@@ -46,6 +47,11 @@ class LineReading:
     decoded: dict[str, DecodedCells]
 
     @property
+    def is_certain(self) -> bool:
+        """Whether what was heard is Braille, and no cell is uncertain because the track was lost."""
+        return not isinstance(self.seen, Track) or self.seen.is_whole
+
+    @property
     def first(self) -> DecodedCells:
         """The cells of the decoder that was named first."""
         return next(iter(self.decoded.values()))
@@ -65,6 +71,7 @@ def read_line(
     Every decoder gets the reader and the voltages alone.
     """
     known = conditions.with_implied_values(kernel)
+    refuse_missing_channels(known, len(kernel.centres_mm))
     chosen = standard_of(kernel, known.standard)
     times = press_times(known, cell_pitch_mm(chosen)) if known.mode == "press" else None
     behind, physics = electronics_of(kernel, readout)
@@ -117,6 +124,7 @@ def reading_content(reading: LineReading, text: str | None, table: str | None) -
         "cells_true": None if true is None else braille(true),
         "characters": None if true is None else len(text_of(true, table)),
         **own,
+        "is_certain": reading.is_certain,
         "decoder": next(iter(decoders)),
         "decoders": decoders,
         "words_per_minute": 60.0 * words / seconds if seconds > 0.0 else None,
@@ -124,7 +132,8 @@ def reading_content(reading: LineReading, text: str | None, table: str | None) -
         "duration_s": seconds,
         "conditions": {**reading.conditions.as_dict(), **_readout_conditions(reading.reader.readout)},
         "share_of_time_at_force": None if reading.path is None else reading.path.held,
-        "track": _track_content(reading.seen),
+        "track": line_content(reading.seen) if isinstance(reading.seen, Track) else None,
+        "cells": cell_content(first),
         "kernel": {key: value for key, value in reading.reader.kernel.about.items() if key != "config"},
         "warnings": _warnings(reading),
     }
@@ -151,16 +160,13 @@ def _duration_s(reading: LineReading) -> float:
         if presses is not None:
             return presses.period_s
         return cell_pitch_mm(reading.reader.standard) / reading.conditions.speed_mm_per_s
-    return float((passed[-1] - passed[0]) * len(passed) / (len(passed) - 1))
-
-
-def _track_content(seen: Track | PressedCells) -> dict[str, float] | None:
-    """The motion as found from the voltages alone."""
-    return vars(seen.posture) if isinstance(seen, Track) else None
+    return float(abs(passed[-1] - passed[0]) * len(passed) / (len(passed) - 1))
 
 
 def _warnings(reading: LineReading) -> list[str]:
     told = standard_warnings(reading.reader.kernel, reading.reader.standard)
+    if isinstance(reading.seen, Track):
+        told += track_warnings(reading.seen, reading.reader.kernel.about["labels"])
     held = None if reading.path is None else reading.path.held
     if held is not None and held < 1.0:
         told.append(

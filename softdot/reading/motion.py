@@ -12,6 +12,7 @@ from foundation.errors import InputError
 from geometry.braille_standards import BrailleStandard
 from softdot.arrays.kernel import ArrayKernel
 from softdot.reading.conditions import WIDEST_TREMOR_RMS, ReadingConditions
+from softdot.reading.hand import LIFTED_MM, hand_course, lift_share, wander_mm
 from softdot.reading.line import DotLine, cell_pitch_mm
 
 PATH_STEP_MM = 0.05
@@ -103,17 +104,24 @@ def _slide_path(
     count: int, pitch: float, reach: float, conditions: ReadingConditions, random: np.random.Generator
 ) -> ArrayPath:
     """The path from before the first dot to behind the last; its start within a cell pitch is random."""
-    speed = conditions.speed_mm_per_s
     first = -pitch / 2.0 - reach - LEAD_MM - pitch * random.random()
     last = pitch * (count - 0.5) + reach + LEAD_MM
-    step = min(PATH_STEP_MM / speed, 1.0 / (TREMOR_STEPS * conditions.tremor_Hz))
-    time: Floats = step * np.arange(int(np.ceil((last - first) / speed / step)) + 1, dtype=np.float64)
+    fastest = conditions.speed_mm_per_s * np.exp(2.0 * conditions.speed_cv)
+    step = min(PATH_STEP_MM / fastest, 1.0 / (TREMOR_STEPS * conditions.tremor_Hz))
+    course = hand_course(last - first, step, conditions, random)
+    time, along = course.time_s, course.place_mm
     y, depth = _tremor(len(time), step, conditions, random)
-    reached: Floats = (pitch * np.arange(count, dtype=np.float64) - first) / speed
-    return ArrayPath(
-        time, first + speed * time, conditions.offset_mm + y, (conditions.depth_mm or 0.0) + depth,
-        conditions.yaw_deg, reached,
-    )  # fmt: skip
+    y = y + conditions.offset_mm + wander_mm(len(time), step, conditions, random)
+    lifted = lift_share(time, conditions, random)
+    deep = (conditions.depth_mm or 0.0) + depth
+    cells = pitch * np.arange(count, dtype=np.float64) - first
+    if conditions.leftward:
+        cells = last - first - cells
+    farthest = np.maximum.accumulate(along)
+    reached = np.interp(cells, farthest, time)
+    place = last - along if conditions.leftward else first + along
+    y = y + np.tan(np.radians(conditions.skew_deg)) * (place - 0.5 * (first + last))
+    return ArrayPath(time, place, y, deep + lifted * (LIFTED_MM - deep), conditions.yaw_deg, reached)
 
 
 def press_times(conditions: ReadingConditions, pitch_mm: float) -> PressTimes:

@@ -73,7 +73,7 @@ def scores(true: Ints, read: Ints, table: str | None) -> dict[str, Any]:
     wrong = Counter((cells[i], said[j]) for i, j in pairs if i is not None and j is not None and cells[i] != said[j])
     missed, false = [0] * DOTS, [0] * DOTS
     for i, j in pairs:
-        own, other = 0 if i is None else cells[i], 0 if j is None else said[j]
+        own, other = 0 if i is None else cells[i], 0 if j is None or said[j] < 0 else said[j]
         for dot in range(DOTS):
             missed[dot] += (own & ~other) >> dot & 1
             false[dot] += (other & ~own) >> dot & 1

@@ -6,7 +6,7 @@ import numpy as np
 
 from foundation.arrays import Floats
 from softdot.reading.cells import braille
-from softdot.reading.decoders.fitted import Track
+from softdot.reading.decoders.track import Track
 from softdot.reading.line import cell_pitch_mm, nominal_line
 from softdot.reading.line_reading import LineReading
 from softdot.reading.score import align
@@ -43,9 +43,7 @@ def _place_mm(reading: LineReading, pitch: float) -> Floats:
     if reading.path is not None:
         return np.interp(reading.voltages.time_s, reading.path.time_s, reading.path.x_mm)
     if isinstance(reading.seen, Track):
-        place = reading.seen.place_mm(reading.voltages.time_s)
-        begin = reading.first.passed_s[0] if len(reading.first.passed_s) else reading.seen.passed_s[0]
-        return np.asarray(place - np.interp(begin, reading.voltages.time_s, place))
+        return reading.seen.place_mm(reading.voltages.time_s)
     assert reading.reader.presses is not None
     return np.asarray(pitch * np.floor(reading.voltages.time_s / reading.reader.presses.period_s))
 
@@ -59,7 +57,7 @@ def page_signals(reading: LineReading) -> dict[str, Any]:
     assert true is not None
     line = nominal_line(true, reading.reader.standard) if reading.line is None else reading.line
     height = reading.reader.standard.nominal_mm("height_mm")
-    read = [braille([cell]) if cell >= 0 else "" for cell in kept["cell_read"]]
+    read = [braille([cell]) for cell in kept["cell_read"]]
     number = np.arange(len(true))
     passed = np.isfinite(kept["read_time_s"])
     at = (

@@ -4,10 +4,9 @@ from collections.abc import Callable
 
 from foundation.errors import InputError
 from softdot.reading.decoders import learned, model, threshold
-from softdot.reading.decoders.fitted import Track
 from softdot.reading.decoders.model import DecodedCells
 from softdot.reading.decoders.pressing import PressedCells, pressed_cells
-from softdot.reading.decoders.track import track_slide
+from softdot.reading.decoders.track import Track, track_slide
 from softdot.reading.voltages import Reader, Voltages, without_mains
 
 Decoder = Callable[[Reader, Track | PressedCells], DecodedCells]
@@ -29,5 +28,4 @@ def named_decoders(names: str) -> list[str]:
 
 def decoder_input(reader: Reader, heard: Voltages) -> Track | PressedCells:
     """The input of all decoders: the track of a slide, or the charges of presses. InputError without a signal."""
-    quiet = without_mains(heard)
-    return track_slide(reader, quiet) if reader.presses is None else pressed_cells(reader, quiet)
+    return track_slide(reader, heard) if reader.presses is None else pressed_cells(reader, without_mains(heard))

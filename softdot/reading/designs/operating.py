@@ -25,7 +25,7 @@ from softdot.config.schema import Config
 from softdot.progress import Untold
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.conditions import ReadingConditions
-from softdot.reading.decoders.onset import NoDotError
+from softdot.reading.decoders.track import NoDotError
 from softdot.reading.kernels import check_kernel, readout_of
 from softdot.reading.line_reading import LineReading, read_line
 from softdot.reading.motion import dots_near
@@ -171,7 +171,7 @@ def forces_N(kernel: ArrayKernel, reading: LineReading) -> Floats:
     path, line = reading.path, reading.line
     assert path is not None
     assert line is not None
-    begin, end = np.searchsorted(path.time_s, [path.reached_s[0], path.reached_s[-1]])
+    begin, end = np.searchsorted(path.time_s, [path.reached_s.min(), path.reached_s.max()])
     span = slice(int(begin), max(int(end), int(begin) + 1), FORCE_STRIDE)
     return kernel.of_many(*dots_near(kernel, line, path, span))[1]
 

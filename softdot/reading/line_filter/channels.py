@@ -1,0 +1,113 @@
+"""What the first seconds say of the channels: resting voltage, noise, polarity, gain, which are dead, and the speed."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from foundation.arrays import Bools, Floats
+from softdot.reading.line_filter.charge import noise_V
+from softdot.reading.line_filter.table import HIGH, LineTable
+
+ONSET_SIGMA, ONSET_S = 8.0, 0.008
+"""Standard deviations of the noise above which a mean over this time is a signal."""
+QUIET_S = 0.1
+"""Least time before the first signal that gives the resting voltages."""
+RESTING_PRIOR_V = 2e-3
+"""Assumed standard deviation of a resting voltage."""
+DEAD_SHARE, SILENT_SHARE = 0.15, 0.4
+"""Shares of the gain of others below which a channel counts as dead, or a
+whole row as one without dots.
+"""
+WIDEST_GAIN = 1.5
+"""Largest ratio of the gain of a channel and the common one that is taken from the first seconds."""
+SMOOTHED_S = 0.006
+"""Time over which charges are averaged before their change is taken."""
+
+
+@dataclass(frozen=True)
+class Channels:
+    """The channels (n,) of the first seconds.
+
+    resting_V, noise_V; gain : charge over that of the kernel, with the sign of the polarity; alive. onset : number of
+    the first sample with a signal, which is inside : a signal was there from the first sample on. speed_mm_per_s :
+    roughly.
+    """
+
+    resting_V: Floats
+    noise_V: Floats
+    gain: Floats
+    alive: Bools
+    onset: int
+    is_inside: bool
+    speed_mm_per_s: float
+
+
+def first_signal(voltage_V: Floats, step_s: float) -> int | None:
+    """Number of the sample at which something stands out of the noise of voltages (t, n); None where nothing does."""
+    many = max(1, round(ONSET_S / step_s))
+    count = len(voltage_V) // many
+    if count < 4:
+        return None
+    mean = voltage_V[: count * many].reshape(count, many, -1).mean(axis=1)
+    floor = 1e-6 * float(np.abs(voltage_V).max()) + 1e-12
+    level = np.abs(mean - np.median(mean, axis=0)) / np.maximum(noise_V(voltage_V) / np.sqrt(many), floor)
+    loud = np.flatnonzero((level > ONSET_SIGMA).any(axis=1))
+    return None if len(loud) == 0 else int(loud[0]) * many
+
+
+def measured_channels(
+    voltage_V: Floats, onset: int, step_s: float, circuit: tuple[Floats, Floats], table: LineTable, places: Floats
+) -> Channels:
+    """What voltages (t, n) without hum say of their channels. circuit : capacitances in F and resistances in Ohm.
+
+    places (n, 2) : middles of the segments, whose rows see the same dots.
+    """
+    quiet = onset - round(0.01 / step_s)
+    is_inside = quiet * step_s < QUIET_S
+    noise = noise_V(voltage_V)
+    if is_inside:
+        resting = voltage_V.mean(axis=0)
+    else:
+        resting = voltage_V[:quiet].mean(axis=0)
+        resting *= 1.0 / (1.0 + (noise / RESTING_PRIOR_V) ** 2 / quiet)
+    capacitance, resistance = circuit
+    flat = voltage_V - resting
+    leaked = np.cumsum(flat, axis=0) * step_s / resistance
+    charge = 1e12 * (capacitance * flat + leaked)[max(onset, 0) :]
+    gain, alive = _gains(charge, is_inside, table, places)
+    return Channels(resting, noise, gain, alive, onset, is_inside, _speed(charge * np.sign(gain), step_s, alive, table))
+
+
+def _gains(charge_pC: Floats, is_inside: bool, table: LineTable, places: Floats) -> tuple[Floats, Bools]:
+    """Signed gain (n,) of each channel, and which are alive."""
+    if is_inside:
+        charge_pC = charge_pC - np.median(charge_pC, axis=0)
+    high, low = np.quantile(charge_pC, [HIGH, 1.0 - HIGH], axis=0)
+    extreme = np.where(high + low >= 0.0, high, low)
+    sign = np.where(extreme * table.high_pC >= 0.0, 1.0, -1.0)
+    size = np.abs(extreme) / np.maximum(np.abs(table.high_pC), 1e-300)
+    if is_inside:
+        size = (high - low) / np.maximum(np.abs(table.high_pC), 1e-300)
+    common = float(np.median(size[size >= np.median(size)]))
+    row = np.array([size[np.abs(places[:, 1] - y) < 0.1 * table.dot_pitch_mm].max() for y in places[:, 1]])
+    alive = size >= DEAD_SHARE * np.maximum(row, SILENT_SHARE * common * (row >= SILENT_SHARE * common))
+    silent = row < SILENT_SHARE * common
+    own = common * np.clip(size / max(common, 1e-300), 1.0 / WIDEST_GAIN, WIDEST_GAIN)
+    gain = np.where(silent, common, own)
+    together = np.sign(np.sum(sign * size * ~silent))
+    return np.where(silent, together, sign) * np.maximum(gain, 1e-12), alive | silent
+
+
+def _speed(charge_pC: Floats, step_s: float, alive: Bools, table: LineTable) -> float:
+    """The speed by how fast the charge changes beside how much it does so."""
+    many = max(1, round(SMOOTHED_S / step_s))
+    count = len(charge_pC) // many
+    mean = charge_pC[: count * many, alive].reshape(count, many, -1).mean(axis=1)
+    change = np.diff(mean, axis=0) / (many * step_s)
+    moving = np.abs(change).max(axis=1)
+    moving = moving > 0.1 * np.quantile(moving, 0.9) if len(moving) else moving > 0.0
+    if not moving.any():
+        return 1.0
+    rate = float(np.sqrt(np.mean(change[moving] ** 2)))
+    spread = float(np.sqrt(np.mean((mean - mean.mean(axis=0)) ** 2)))
+    return rate / max(spread, 1e-300) * table.spread_pC / table.slope_pC_per_mm

@@ -1,0 +1,144 @@
+"""The hypotheses with which a line begins, or a lost track is looked for, and how a hand moves."""
+
+from dataclasses import dataclass
+from itertools import product
+from math import log, sqrt
+
+import numpy as np
+
+from foundation.arrays import Floats, Ints
+from softdot.reading.line_filter.beam import (
+    COLUMNS,
+    FORTH,
+    KEPT_COLUMNS,
+    LOG_WEIGHT,
+    OFFSET,
+    PLACE,
+    SEEN,
+    UNSEEN,
+    YAW,
+    Settings,
+)
+from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, LineTable, column_mm
+
+SPEED_SPREAD_PER_SQRT_S, JUMP, JUMPS_PER_S = 0.5, 0.35, 0.5
+"""Random walk of the log-speed, its jumps, and how often each happens."""
+RELAX_S, SETTLE_S = 1.0, 2.0
+"""Time in which the log-speed returns to its mean, and the mean follows the log-speed."""
+STOPS_PER_S, GOES_PER_S, BACKS_PER_S, FORTHS_PER_S = 0.3, 3.0, 0.2, 4.0
+ASIDES_PER_S, TURNS_PER_S, LIFTS_PER_S, TOUCHES_PER_S = 1.0, 0.2, 0.2, 6.0
+"""How often a hand stops and goes on, turns back and forth, moves or turns by a step, loses and finds contact: all of
+this is assumed.
+"""
+BLANK = 0.3
+"""Share of blank columns."""
+ROUGH_SHARE, DEGREES = 0.12, 5.0
+"""Standard deviation of a charge over the charge, and degrees of freedom of Student's t."""
+KEPT_LOG, MOST_KEPT = 12.0, 2500
+SPEED_FACTOR, SPEEDS = 3.0, 9
+"""Factor about a rough speed within which speeds are tried, and their number."""
+FARTHEST_SHARE, NEAREST_MM, ENTRY_STEP_MM = 1.0, 0.4, 0.2
+"""Distance at which the first column may be seen first: of half the window, and the nearest."""
+FIRST_COLUMN = 0.85
+"""Share of lines whose first dots are in the first column of their cell."""
+
+
+@dataclass
+class Hypotheses:
+    """Rows of state (h, 4), choice (h, 6) and drift (h, n), as in softdot.reading.line_filter.beam."""
+
+    state: Floats
+    choice: Ints
+    drift: Floats
+
+
+def settings(step_s: float) -> Settings:
+    """The motion of a hand in steps of a time."""
+
+    def often(per_s: float) -> float:
+        return log(min(per_s * step_s, 0.5))
+
+    return Settings(
+        step_s=step_s,
+        faster=SPEED_SPREAD_PER_SQRT_S * sqrt(3.0 * step_s),
+        jump=JUMP,
+        relax=min(step_s / RELAX_S, 1.0),
+        settle=min(step_s / SETTLE_S, 1.0),
+        log_jump=often(JUMPS_PER_S),
+        log_stop=often(STOPS_PER_S),
+        log_go=often(GOES_PER_S),
+        log_back=often(BACKS_PER_S),
+        log_forth=often(FORTHS_PER_S),
+        log_aside=often(ASIDES_PER_S),
+        log_turn=often(TURNS_PER_S),
+        log_lift=often(LIFTS_PER_S),
+        log_touch=often(TOUCHES_PER_S),
+        log_blank=log(BLANK),
+        rough=ROUGH_SHARE,
+        degrees=DEGREES,
+        kept_log=KEPT_LOG,
+        most_kept=MOST_KEPT,
+    )
+
+
+def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) -> Hypotheses:
+    """The array meets the first column of a line: of its cell the first or the second, any pattern but a blank."""
+    entries = np.arange(NEAREST_MM, 0.5 * FARTHEST_SHARE * table.cell_pitch_mm, ENTRY_STEP_MM)
+    offsets, yaws = range(0, len(OFFSETS_MM), 2), range(0, len(YAWS_DEG), 2)
+    rows, chosen = [], []
+    for column, pattern in product((0, 1), range(1, 8)):
+        chance = log((FIRST_COLUMN if column == 0 else 1.0 - FIRST_COLUMN) / 7.0)
+        for entry, speed, offset, yaw in product(entries, _speeds(speed_mm_per_s), offsets, yaws):
+            rows.append((column_mm(table, column) - entry, speed, speed, chance))
+            chosen.append((FORTH, offset, yaw, 1, column + 1, pattern))
+    return Hypotheses(np.array(rows), np.array(chosen, dtype=np.int64), np.zeros((len(rows), channels)))
+
+
+def _speeds(speed_mm_per_s: float) -> Floats:
+    return np.log(speed_mm_per_s) + log(SPEED_FACTOR) * np.linspace(-1.0, 1.0, SPEEDS)
+
+
+def anywhere(table: LineTable, best: Hypotheses, speeds: Floats) -> Hypotheses:
+    """Around the place of one hypothesis, within half a cell to each side: any two columns, near postures and speeds.
+
+    Weights sum up to 1. speeds (s,) : logarithms.
+    """
+    pitch = table.cell_pitch_mm
+    places = best.state[0, PLACE] + np.arange(-0.5 * pitch, 0.5 * pitch, 0.15)
+    offset, yaw = int(best.choice[0, OFFSET]), int(best.choice[0, YAW])
+    offsets = sorted({min(max(offset + k, 0), len(OFFSETS_MM) - 1) for k in (-2, 0, 2)})
+    rows, chosen = [], []
+    for place in places:
+        columns, seen = _with_unseen(best.choice[0], _last_in_window(table, place))
+        for speed, aside, pattern in product(speeds, offsets, range(64)):
+            rows.append((place, speed, speed, _chance_of(pattern)))
+            own = columns & ~0xFF | pattern >> 3 | (pattern & 7) << 4
+            chosen.append((FORTH, aside, yaw, 1, seen, own))
+    state, choice = np.array(rows), np.array(chosen, dtype=np.int64)
+    state[:, LOG_WEIGHT] -= np.log(np.exp(state[:, LOG_WEIGHT]).sum())
+    return Hypotheses(state, choice, np.repeat(best.drift[:1], len(rows), axis=0))
+
+
+def _chance_of(pattern: int) -> float:
+    return sum(log(BLANK if column == 0 else (1.0 - BLANK) / 7.0) for column in (pattern & 7, pattern >> 3))
+
+
+def _last_in_window(table: LineTable, place: float) -> int:
+    """Number of the foremost column within half a cell pitch of a place."""
+    number = max(1, 2 * int(place // table.cell_pitch_mm))
+    while column_mm(table, number + 1) <= place + 0.5 * table.cell_pitch_mm:
+        number += 1
+    return number
+
+
+def _with_unseen(choice: Ints, last: int) -> tuple[int, int]:
+    """Columns and their number as if the column last were the foremost; those that passed meanwhile were not seen."""
+    columns, seen = int(choice[COLUMNS]), int(choice[SEEN])
+    while seen <= last:
+        columns, seen = columns << 4 | UNSEEN, seen + 1
+    while seen > last + 1:
+        columns, seen = columns >> 4, seen - 1
+    mask = (1 << 4 * KEPT_COLUMNS) - 1
+    columns &= mask
+    return columns - (1 << 64) if columns >> 63 else columns, seen
+

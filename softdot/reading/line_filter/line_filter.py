@@ -1,0 +1,222 @@
+"""The filter of one direction: all hypotheses of where the array is and what has passed, and the cells they agree on."""
+
+from collections import deque
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from foundation.arrays import Floats
+from softdot.reading.cells import DOTS
+from softdot.reading.line_filter.beam import (
+    COLUMNS,
+    KEPT_COLUMNS,
+    LOG_SPEED,
+    LOG_WEIGHT,
+    MOST_CHILDREN,
+    OFFSET,
+    PLACE,
+    SEEN,
+    STILL,
+    TOUCH,
+    UNSEEN,
+    WAY,
+    YAW,
+    Sensor,
+    advance,
+    predicted_charges,
+)
+from softdot.reading.line_filter.hypotheses import Hypotheses, anywhere, settings
+from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, LineTable
+
+LAG_COLUMNS = 4
+"""Columns that must follow a cell before it is given out."""
+FLOOR_SHARE = 0.045
+"""Standard deviation of a charge of none over the largest charge of one dot."""
+TOUCH_SHARE = 0.08
+"""Share of the largest charge of one dot above which lost contact may be found again."""
+FIT_S = 0.2
+"""Time over which the fit of the best hypothesis is averaged."""
+LOST_FIT, FOUND_FIT = 4.0, 2.0
+"""Mean squared residuals in their variance above which a track is lost, and below which it is found again."""
+PATIENCE_S = 0.6
+"""Time that a new start has before the next one."""
+GAIN_S, GAIN_PRIOR_S, WIDEST_GAIN = 8.0, 2.0, 2.0
+"""Memory of the gains that are followed, weight of the first ones, and how far they may go from these."""
+NEAR_MM = 3.0
+"""Way from the middle of a cell within which the fit counts for it."""
+
+
+@dataclass(frozen=True)
+class PassedCell:
+    """A cell as the hypotheses have it: number, the most likely one (-1 where none was seen), its probability, time
+    at which the array's middle passed it, and the worst fit meanwhile.
+    """
+
+    number: int
+    cell: int
+    probability: float
+    time_s: float
+    worst_fit: float
+
+
+@dataclass
+class LineFilter:
+    """The filter of one direction. evidence : logarithm of that of all charges so far."""
+
+    table: LineTable
+    sensor: Sensor
+    step_s: float
+    hypotheses: Hypotheses
+    evidence: float = 0.0
+    fit: float = 1.0
+    losses: int = 0
+    emitted: int = 0
+    passed: int = 0
+    touching: bool = True
+    is_lost: bool = False
+    _patience_s: float = 0.0
+    _reference: Hypotheses | None = None
+    _times: deque[float] = field(default_factory=deque)
+    _fits: dict[int, float] = field(default_factory=dict)
+    _products: Floats | None = None
+
+    def __post_init__(self) -> None:
+        """Make room for children and products."""
+        channels = self.table.charge.shape[-1]
+        self._settings = settings(self.step_s)
+        self._room = (
+            np.empty((MOST_CHILDREN, 4)), np.empty((MOST_CHILDREN, 6), dtype=np.int64),
+            np.empty(MOST_CHILDREN, dtype=np.int64),
+        )  # fmt: skip
+        prior = GAIN_PRIOR_S / self.step_s * (0.3 * self.table.largest_pC) ** 2
+        self._products = np.full((2, channels), prior)
+        self._best = 0
+
+    @property
+    def best(self) -> Hypotheses:
+        """The most likely hypothesis alone."""
+        one, all_ = self._best, self.hypotheses
+        return Hypotheses(all_.state[one : one + 1], all_.choice[one : one + 1], all_.drift[one : one + 1])
+
+    @property
+    def place_mm(self) -> float:
+        """Place of the array's middle from the first column of the first cell."""
+        return float(self.hypotheses.state[self._best, PLACE])
+
+    @property
+    def speed_mm_per_s(self) -> float:
+        """Speed of the most likely hypothesis; negative on a way back."""
+        way = int(self.hypotheses.choice[self._best, WAY])
+        return 0.0 if way == STILL else way * float(np.exp(self.hypotheses.state[self._best, LOG_SPEED]))
+
+    @property
+    def offset_mm(self) -> float:
+        """Distance of the array's middle from the middle row."""
+        return float(OFFSETS_MM[self.hypotheses.choice[self._best, OFFSET]])
+
+    @property
+    def yaw_deg(self) -> float:
+        """Turn of the array against the line."""
+        return float(YAWS_DEG[self.hypotheses.choice[self._best, YAW]])
+
+    def step(self, charge_pC: Floats, temper: float, time_s: float) -> Floats:
+        """Take the charges (n,) of the next step, and return the residuals (n,) of the best hypothesis."""
+        known = self.hypotheses
+        largest = np.abs(charge_pC - known.drift[self._best]).max()
+        state, choice, drift, evidence = advance(
+            known.state, known.choice, known.drift, charge_pC, temper,
+            bool(largest > TOUCH_SHARE * self.table.largest_pC), self.sensor, self._settings, self._room,
+        )  # fmt: skip
+        self.hypotheses = Hypotheses(state, choice, drift)
+        self.evidence += evidence
+        self._best = int(np.argmax(state[:, LOG_WEIGHT]))
+        self.touching = bool(choice[self._best, TOUCH])
+        residual = self._learn(charge_pC)
+        self._note_time(time_s)
+        self._look_for_the_track(time_s)
+        return residual
+
+    def _learn(self, charge_pC: Floats) -> Floats:
+        """Follow fit and gains by the best hypothesis; the residuals (n,) that it leaves."""
+        predicted = predicted_charges(self.hypotheses.state[self._best], self.hypotheses.choice[self._best], self.sensor)
+        heard = charge_pC - self.hypotheses.drift[self._best]
+        alive, gain = self.sensor.alive, self.sensor.gain
+        residual = heard - gain * predicted
+        variance = self.sensor.floor_pC2 + (self._settings.rough * predicted) ** 2
+        share = min(self.step_s / FIT_S, 1.0)
+        square = float(np.mean(np.minimum(residual[alive] ** 2 / variance[alive], 50.0)))
+        self.fit += share * (square - self.fit)
+        if self.fit < FOUND_FIT and self.speed_mm_per_s != 0.0 and self.touching:
+            assert self._products is not None
+            fade = 1.0 - self.step_s / GAIN_S
+            fair = np.abs(residual) < 4.0 * np.sqrt(variance)
+            self._products = fade * self._products + fair * np.stack([predicted * heard, predicted**2])
+            prior = (1.0 - fade) * GAIN_PRIOR_S / self.step_s * (0.3 * self.table.largest_pC) ** 2
+            self._products += prior
+            gain[:] = np.clip(self._products[0] / self._products[1], 1.0 / WIDEST_GAIN, WIDEST_GAIN)
+        return residual
+
+    def _note_time(self, time_s: float) -> None:
+        """Note the time at which the best hypothesis first passes a cell, and the fit around it."""
+        pitch, middle = self.table.cell_pitch_mm, 0.5 * self.table.dot_pitch_mm
+        while self.place_mm >= self.passed * pitch + middle:
+            self._times.append(time_s)
+            self.passed += 1
+        rear = int(np.floor((self.place_mm - middle - NEAR_MM) / pitch)) + 1
+        for number in range(max(rear, self.emitted), rear + 2):
+            if abs(self.place_mm - middle - number * pitch) <= NEAR_MM:
+                self._fits[number] = max(self._fits.get(number, 0.0), self.fit)
+
+    def _look_for_the_track(self, time_s: float) -> None:
+        """Start anew where the fit is bad, beside the hypotheses so far."""
+        self._patience_s -= self.step_s
+        if self.is_lost and self.fit < FOUND_FIT:
+            self.is_lost = False
+        if self.fit <= LOST_FIT or self._patience_s > 0.0:
+            return
+        self.is_lost, self._patience_s = True, PATIENCE_S
+        self.losses += 1
+        best = self.best
+        centre = float(best.state[0, LOG_SPEED])
+        fresh = anywhere(self.table, best, centre + np.linspace(-1.0, 1.0, 7))
+        known = self.hypotheses
+        known.state[:, LOG_WEIGHT] -= known.state[self._best, LOG_WEIGHT]
+        self.hypotheses = Hypotheses(
+            np.concatenate([known.state, fresh.state]),
+            np.concatenate([known.choice, fresh.choice]),
+            np.concatenate([known.drift, fresh.drift]),
+        )
+
+    def ready_cells(self, at_end: bool = False) -> list[PassedCell]:
+        """The cells that are far enough behind, or at the end all that were passed or seen."""
+        found = []
+        while self._is_ready(at_end):
+            found.append(self._cell(self.emitted))
+            self.emitted += 1
+        return found
+
+    def _is_ready(self, at_end: bool) -> bool:
+        seen = int(self.hypotheses.choice[self._best, SEEN])
+        return seen >= 2 * self.emitted + (2 if at_end else 2 + LAG_COLUMNS)
+
+    def _cell(self, number: int) -> PassedCell:
+        """The marginal of a cell over all hypotheses."""
+        weight = np.exp(self.hypotheses.state[:, LOG_WEIGHT] - self.hypotheses.state[:, LOG_WEIGHT].max())
+        weight /= weight.sum()
+        columns, seen = self.hypotheses.choice[:, COLUMNS], self.hypotheses.choice[:, SEEN]
+        first, second = (_column(columns, seen, 2 * number + k) for k in (0, 1))
+        known = (first < UNSEEN) & (second < UNSEEN) & (first >= 0) & (second >= 0)
+        share = np.bincount(np.where(known, (first & 7) | (second & 7) << 3, 64), weight, 1 << DOTS | 1)
+        cell = int(np.argmax(share[:64]))
+        fit = self._fits.pop(number, self.fit)
+        time = self._times.popleft() if self._times else np.nan
+        if share[64] >= 0.5:
+            return PassedCell(number, -1, 0.0, time, fit)
+        return PassedCell(number, cell, float(share[cell]), time, fit)
+
+
+def _column(columns: np.ndarray, seen: np.ndarray, number: int) -> np.ndarray:
+    """Patterns (h,) of a column; -1 where a hypothesis has not seen it."""
+    back = seen - 1 - number
+    there = (back >= 0) & (back < KEPT_COLUMNS)
+    return np.where(there, (columns >> (4 * np.clip(back, 0, KEPT_COLUMNS - 1))) & 15, -1)

@@ -1,0 +1,63 @@
+"""What a reading says of the line besides its text: direction, speed, hum, channels, lost track, and doubts in sentences."""
+
+from typing import Any
+
+import numpy as np
+
+from softdot.reading.decoders.model import DecodedCells
+from softdot.reading.decoders.track import Track
+from softdot.reading.line_filter.line_reader import CERTAIN
+
+
+def line_content(track: Track) -> dict[str, Any]:
+    """What reading.json says of the line that a track was found on."""
+    report = track.report
+    return {
+        "speed_mm_per_s": track.speed_mm_per_s,
+        "offset_mm": report.offset_mm,
+        "yaw_deg": report.yaw_deg,
+        "direction": "leftward" if report.leftward else "rightward",
+        "begin_s": report.begin_s,
+        "hum_Hz": report.hum_Hz,
+        "gain": report.gain,
+        "dead_channels": list(report.dead),
+        "noise_mV": 1e3 * report.noise_V,
+        "resting_mV": 1e3 * report.resting_V,
+        "lost_track": report.lost,
+        "cells_without_contact": int((track.cells < 0).sum()),
+    }
+
+
+def cell_content(found: DecodedCells) -> list[dict[str, Any]]:
+    """Each cell with its likely one, probability and time."""
+    if found.likely is None or found.probability is None:
+        return []
+    rows = zip(found.likely, found.probability, found.passed_s, strict=True)
+    return [
+        {"cell": int(cell), "probability": round(float(share), 6), "time_s": round(float(at), 6)}
+        for cell, share, at in rows
+    ]
+
+
+def track_warnings(track: Track, labels: list[str]) -> list[str]:
+    """Sentences about all that a user should know of the line and its channels."""
+    report, told = track.report, []
+    if report.dead:
+        names = ", ".join(labels[number - 1] for number in report.dead)
+        told.append(f"dead channels: {names} gave no signal where others did; the line was read without them")
+    turned = report.gain < 0.0
+    if turned.all():
+        told.append("polarity: all channels are turned against the kernel; the line was read with the other sign")
+    elif turned.any():
+        names = ", ".join(labels[k] for k in np.flatnonzero(turned) if k < len(labels))
+        told.append(f"polarity: {names} is turned against the others; it was read with the other sign")
+    if not track.is_braille:
+        share = 100.0 * float(np.mean(track.probability >= CERTAIN))
+        told.append(
+            f"voltages: only {share:.0f} % of the cells are certain; this is no line of Braille, or the leads are in "
+            "another order, or the array is another one than that of the kernel"
+        )
+    elif report.lost:
+        count = int((track.probability < CERTAIN).sum())
+        told.append(f"the track was lost {report.lost} times and looked for anew; {count} cells are uncertain ('?')")
+    return told
