@@ -42,7 +42,7 @@ def decode(reader: Reader, seen: Track | PressedCells) -> DecodedCells:
         middles = cell_pitch_mm(reader.standard) * np.arange(len(seen.passed_s), dtype=np.float64)
         place, samples = seen.first_passing()
         turned = -1.0 if seen.report.leftward else 1.0  # a charge that comes in one direction goes in the other
-        features = _slide_features(turned * seen.heard.voltage_V[samples], place, middles)
+        features = _slide_features(turned * seen.quiet.voltage_V[samples], place, middles)
     dots = np.asarray(network.predict(features), dtype=bool)
     return trim_blanks(cells_from(dots), seen.passed_s)
 

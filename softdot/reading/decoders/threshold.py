@@ -37,7 +37,7 @@ def _pressed_levels(reader: Reader, seen: PressedCells) -> Floats:
 def _slid_levels(reader: Reader, seen: Track) -> Floats:
     """Peaks (c, 6) of the charge as the dot passes under the electrodes of its row, their mean."""
     place, samples = seen.first_passing()
-    charge = restored_charge_pC(reader, seen.heard)[samples]
+    charge = restored_charge_pC(reader, seen.quiet)[samples]
     grid = np.arange(place[0], place[-1], LEVEL_STEP_MM)
     pitch, dots = cell_pitch_mm(reader.standard), dot_places_mm(reader.standard)
     centres = reader.kernel.centres_mm

@@ -1,6 +1,7 @@
 """The track of a slide over a line, as softdot.reading.line_filter finds it from the voltages alone."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -27,7 +28,7 @@ class NoDotError(InputError):
 class Track:
     """The track of a slide over a line, and the cells that were read on the way.
 
-    heard : voltages without hum. cells, probability, passed_s (c,) : the most likely cells from left to right, -1 where
+    cells, probability, passed_s (c,) : the most likely cells from left to right, -1 where
     one passed without contact, their probabilities, and when the array's middle passed each. course_s, course_mm (t,) :
     place of the array's middle from the first cell that was met, in the direction of its motion.
     """
@@ -40,6 +41,15 @@ class Track:
     passed_s: Floats
     course_s: Floats
     course_mm: Floats
+
+    @cached_property
+    def quiet(self) -> Voltages:
+        """The voltages less the hum of the whole recording."""
+        rate = 1.0 / self.heard.step_s
+        begin = self.heard.voltage_V[: round(HUM_S * rate)]
+        hum = hum_state(begin, rate, hum_frequency_Hz(begin, rate))
+        rest = without_hum(self.heard.voltage_V, *hum, 2.0 * np.pi * BANDWIDTH_HZ / rate)
+        return Voltages(self.heard.time_s, rest)
 
     @property
     def speed_mm_per_s(self) -> float:
@@ -91,15 +101,7 @@ def track_slide(reader: Reader, heard: Voltages) -> Track:
     first = found[0].number
     order = found[::-1] if report.leftward else found
     return Track(
-        report, _without_hum(heard), pitch, np.array([one.cell for one in order], dtype=np.int64),
+        report, heard, pitch, np.array([one.cell for one in order], dtype=np.int64),
         np.array([one.probability for one in order]), np.array([one.time_s for one in order]),
         course[:, 0], course[:, 1] - pitch * first,
     )  # fmt: skip
-
-
-def _without_hum(heard: Voltages) -> Voltages:
-    """The voltages less the hum of a whole recording."""
-    rate = 1.0 / heard.step_s
-    begin = heard.voltage_V[: round(HUM_S * rate)]
-    hum = hum_state(begin, rate, hum_frequency_Hz(begin, rate))
-    return Voltages(heard.time_s, without_hum(heard.voltage_V, *hum, 2.0 * np.pi * BANDWIDTH_HZ / rate))

@@ -74,8 +74,8 @@ class LineFilter:
     passed: int = 0
     touching: bool = True
     is_lost: bool = False
+    _now_s: float = 0.0
     _patience_s: float = 0.0
-    _reference: Hypotheses | None = None
     _times: deque[float] = field(default_factory=deque)
     _fits: dict[int, float] = field(default_factory=dict)
     _products: Floats | None = None
@@ -102,6 +102,11 @@ class LineFilter:
     def place_mm(self) -> float:
         """Place of the array's middle from the first column of the first cell."""
         return float(self.hypotheses.state[self._best, PLACE])
+
+    @property
+    def columns_seen(self) -> int:
+        """Number of columns that the most likely hypothesis has seen."""
+        return int(self.hypotheses.choice[self._best, SEEN])
 
     @property
     def speed_mm_per_s(self) -> float:
@@ -133,7 +138,7 @@ class LineFilter:
         self.touching = bool(choice[self._best, TOUCH])
         residual = self._learn(charge_pC)
         self._note_time(time_s)
-        self._look_for_the_track(time_s)
+        self._look_for_the_track()
         return residual
 
     def _learn(self, charge_pC: Floats) -> Floats:
@@ -158,6 +163,7 @@ class LineFilter:
 
     def _note_time(self, time_s: float) -> None:
         """Note the time at which the best hypothesis first passes a cell, and the fit around it."""
+        self._now_s = time_s
         pitch, middle = self.table.cell_pitch_mm, 0.5 * self.table.dot_pitch_mm
         while self.place_mm >= self.passed * pitch + middle:
             self._times.append(time_s)
@@ -167,7 +173,7 @@ class LineFilter:
             if abs(self.place_mm - middle - number * pitch) <= NEAR_MM:
                 self._fits[number] = max(self._fits.get(number, 0.0), self.fit)
 
-    def _look_for_the_track(self, time_s: float) -> None:
+    def _look_for_the_track(self) -> None:
         """Start anew where the fit is bad, beside the hypotheses so far."""
         self._patience_s -= self.step_s
         if self.is_lost and self.fit < FOUND_FIT:
@@ -196,8 +202,7 @@ class LineFilter:
         return found
 
     def _is_ready(self, at_end: bool) -> bool:
-        seen = int(self.hypotheses.choice[self._best, SEEN])
-        return seen >= 2 * self.emitted + (2 if at_end else 2 + LAG_COLUMNS)
+        return self.columns_seen >= 2 * self.emitted + (2 if at_end else 2 + LAG_COLUMNS)
 
     def _cell(self, number: int) -> PassedCell:
         """The marginal of a cell over all hypotheses."""
@@ -209,7 +214,7 @@ class LineFilter:
         share = np.bincount(np.where(known, (first & 7) | (second & 7) << 3, 64), weight, 1 << DOTS | 1)
         cell = int(np.argmax(share[:64]))
         fit = self._fits.pop(number, self.fit)
-        time = self._times.popleft() if self._times else np.nan
+        time = self._times.popleft() if self._times else self._now_s
         if share[64] >= 0.5:
             return PassedCell(number, -1, 0.0, time, fit)
         return PassedCell(number, cell, float(share[cell]), time, fit)

@@ -253,16 +253,16 @@ class LineReader:
     def _choose_direction(self) -> None:
         """Keep the better direction alone as soon as it is clear."""
         first, second = self._filters
-        seen = int(self._better.hypotheses.choice[self._better._best, 4])
-        if abs(first.evidence - second.evidence) > DIRECTION_EVIDENCE or seen >= DIRECTION_COLUMNS:
+        is_late = self._better.columns_seen >= DIRECTION_COLUMNS
+        if is_late or abs(first.evidence - second.evidence) > DIRECTION_EVIDENCE:
             self._filters = [self._better]
 
     def _given_out(self, passed: list[PassedCell]) -> list[ReadCell]:
-        """The cells up to the last one that is not blank; blanks wait for the next one that is not."""
+        """The cells up to the last one with a dot; those without wait for the next one with one."""
         found: list[ReadCell] = []
         for one in passed:
             self._blanks.append(one)
-            if one.cell != 0:
+            if one.cell > 0:
                 found += [self._read_cell(each) for each in self._blanks]
                 self._blanks = []
         return found

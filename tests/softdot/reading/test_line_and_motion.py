@@ -58,6 +58,28 @@ def test_a_slide_passes_every_cell_at_its_time(kernel):
     assert path.x_mm[-1] > 24.0 + 1.25 + reach_mm(kernel, 0.0)
 
 
+def test_a_hand_moves_as_stated(kernel):
+    """The logarithm of its speed has its standard deviation; it rests, goes back, and leaves from the other end."""
+    _, path = path_of(kernel, np.ones(200, dtype=int), speed_mm_per_s=40.0, speed_cv=0.2, speed_time_s=0.2)
+    log_speed = np.log(np.diff(path.x_mm)[:-1] / np.diff(path.time_s)[:-1])
+    assert log_speed.std() == pytest.approx(0.2, rel=0.2)
+    assert log_speed.mean() == pytest.approx(np.log(40.0), abs=0.08)
+    _, path = path_of(kernel, np.ones(20, dtype=int), pauses=2.0, ways_back=3.0, leftward=True)
+    moved = np.diff(path.x_mm)
+    assert path.x_mm[0] > path.x_mm[-1]
+    assert 9.0 <= moved[moved > 0.0].sum() <= 30.0
+    assert 0.6 <= (moved == 0.0).sum() * path.time_s[1] <= 3.0
+    assert (np.diff(path.reached_s) < 0.0).all()
+
+
+def test_a_path_wanders_is_skewed_and_loses_contact(kernel):
+    _, path = path_of(kernel, np.ones(400, dtype=int), wander_mm=0.3, tremor_um=0.0, contact_losses=1.0)
+    assert path.y_mm.std() == pytest.approx(0.3, rel=0.3)
+    assert (path.depth_mm <= 0.0).sum() * path.time_s[1] == pytest.approx(0.2, abs=0.05)
+    _, path = path_of(kernel, np.ones(20, dtype=int), skew_deg=1.0, tremor_um=0.0)
+    np.testing.assert_allclose(np.ptp(path.y_mm) / np.ptp(path.x_mm), np.tan(np.radians(1.0)))
+
+
 def test_tremor_has_its_rms_and_bandwidth(kernel):
     _, path = path_of(kernel, cells_of("touch " * 60), tremor_um=5.0, tremor_Hz=2.0)
     wobble = path.depth_mm - path.depth_mm.mean()

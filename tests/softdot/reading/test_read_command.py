@@ -14,7 +14,7 @@ TEXT = "soft dots"
 @pytest.fixture(scope="module")
 def written(kernel_folder, tmp_path_factory):
     out = tmp_path_factory.mktemp("read") / "out"
-    command = ["read", TEXT, "--kernel", str(kernel_folder), "--standard", "marburg-medium", "-q", "-o", str(out)]
+    command = ["read", TEXT, "--kernel", str(kernel_folder), "--speed-mm-per-s", "30", "-q", "-o", str(out)]
     assert main([*command, "--decoders", "model,threshold"]) == 0
     return out
 
@@ -25,10 +25,13 @@ def test_a_folder_says_what_was_read(written):
     assert told["format"] == "softdot-reading/1"
     assert told["text_true"] == told["text_read"] == TEXT
     assert told["character_accuracy"]["value"] == 1.0
-    assert told["words_per_minute"] == pytest.approx(2 / (9 * 6.0 / 10.0) * 60.0)
-    assert told["cells_per_s"] == pytest.approx(10.0 / 6.0)
+    assert told["words_per_minute"] == pytest.approx(2 / (9 * 6.0 / 30.0) * 60.0)
+    assert told["cells_per_s"] == pytest.approx(30.0 / 6.0)
     assert set(told["decoders"]) == {"model", "threshold"}
     assert told["conditions"]["noise_mV"] == 1.0
+    assert told["is_certain"]
+    assert len(told["cells"]) == 9
+    assert all(0.9 <= one["probability"] <= 1.0 for one in told["cells"])
     assert told["conditions"]["readout_input_resistance_MOhm"] == 10.0
     assert (written / "signals.png").stat().st_size > 10_000
     with np.load(written / "signals.npz") as file:
@@ -57,7 +60,7 @@ def test_a_recording_is_read_as_the_simulation_was(written, kernel_folder, tmp_p
     told = json.loads(capfd.readouterr().out)
     assert told["text_read"] == TEXT
     assert told["text_true"] is None
-    assert told["track"]["speed_mm_per_s"] == pytest.approx(10.0, rel=0.02)
+    assert told["track"]["speed_mm_per_s"] == pytest.approx(30.0, rel=0.03)
 
 
 def refused(arguments, out, capfd):
@@ -87,6 +90,10 @@ def test_bad_requests_are_one_sentence(kernel_folder, tmp_path, capfd):
         (): "text: is empty",
         ("a", "--depth-mm", "0.9"): "--depth-mm = 0.9: with scatter",
         ("a", "--decoders", "oracle"): "--decoders = 'oracle': 'oracle' is none of model, threshold, learned",
+        ("a", "--pauses", "1.5"): "--pauses = 1.5: must be a whole number",
+        ("a", "--dead-channel", "7"): "--dead-channel = 7: the array has 6 channels",
+        ("a", "--hum-Hz", "60"): "--hum-Hz = 60.0: acts only with --hum-mV above 0",
+        ("a", "--force-N", "1", "--contact-losses", "1"): "--contact-losses = 1: a held force keeps contact",
         ("a", "--standard", "nls"): "--standard = 'nls': its dots are 2.34 mm apart",
         ("a", "examples/dome.toml"): f"kernel '{kernel_folder}': config_hash",
     }.items():
@@ -111,6 +118,17 @@ def test_bad_kernels_are_one_sentence(kernel, tmp_path, capfd):
         said = refused(["a", "--kernel", str(folder), "-q"], tmp_path / "out", capfd)
         assert sentence in said
     assert "kernel.json" in refused(["a", "--kernel", str(tmp_path), "-q"], tmp_path / "out", capfd)
+
+
+def test_a_line_that_is_not_believed_has_no_text_and_a_status(kernel_folder, tmp_path, capfd):
+    """Two channels are exchanged, each of another row and column."""
+    out = tmp_path / "out"
+    command = ["read", "touch and read", "--kernel", str(kernel_folder), "--speed-mm-per-s", "40", "-o", str(out)]
+    assert main([*command, "--swapped-channel", "2", "--decoders", "model"]) == 3
+    assert "another order" in capfd.readouterr().err
+    told = json.loads((out / "reading.json").read_text("utf-8"))
+    assert set(told["text_read"]) == {"?"}
+    assert not told["is_certain"]
 
 
 @pytest.mark.press

@@ -7,7 +7,6 @@ import pytest
 
 from foundation.errors import InputError
 from geometry.braille_standards import standard
-from softdot.reading.decoders.templates import Posture, templates
 from softdot.reading.kernels import electronics_of
 from softdot.reading.recorded_file import read_voltages
 from softdot.reading.voltages import Reader, Voltages, readout_voltages, restored_charge_pC
@@ -82,20 +81,32 @@ def test_noise_and_hum_are_as_large_as_stated(kernel):
     assert np.abs(humming - quiet).max() == pytest.approx(3e-3, rel=0.02)
 
 
+def test_channels_are_wired_as_stated(kernel):
+    """A dead channel gives noise alone, two are exchanged, one or all are turned."""
+    cells, quiet = np.array([63]), {**NOMINAL, "noise_mV": 0.0}
+    right = simulated(kernel, cells, **quiet)[1].voltage_V
+
+    def wired(**changed):
+        return simulated(kernel, cells, **quiet, **changed)[1].voltage_V
+
+    assert not wired(dead_channel=2.0)[:, 1].any()
+    np.testing.assert_array_equal(wired(swapped_channel=6.0)[:, [5, 1, 2, 3, 4, 0]], right)
+    np.testing.assert_array_equal(wired(reversed_channel=4.0), right * np.array([1, 1, 1, -1, 1, 1]))
+    np.testing.assert_array_equal(wired(reversed_all=True), -right)
+    scattered = wired(gain_scatter=0.3)
+    gain = scattered[np.argmax(np.abs(right), axis=0), np.arange(6)] / np.abs(right).max(axis=0)
+    assert (np.abs(np.abs(gain) - 1.0) <= 0.3).all()
+    assert np.abs(gain).std() > 0.05
+
+
 def test_a_dot_that_passes_twice_as_fast_gives_twice_the_voltage(kernel):
     """Behind a resistor that lets the charge go at once: V = R dQ/dt."""
-    own = reader(kernel, Readout(input_resistance_MOhm=0.01))
-    slow, fast = (templates(own, Posture(speed), 0.05 / speed).voltage_V for speed in (10.0, 20.0))
-    assert np.abs(fast).max() == pytest.approx(2.0 * np.abs(slow).max(), rel=0.01)
-
-
-def test_voltages_are_the_sum_of_templates_where_dots_are_far_apart(kernel):
-    """One dot in each cell, four cells apart: what a decoder expects is what is heard."""
-    own, heard = simulated(kernel, np.array([1, 0, 0, 0, 4]), **NOMINAL)
-    known = templates(own, Posture(10.0), heard.step_s)
-    assert np.abs(heard.voltage_V).max() == pytest.approx(np.abs(known.voltage_V).max(), rel=0.05)
-    energy = float((heard.voltage_V**2).sum())
-    assert energy == pytest.approx(float((known.voltage_V[:, [0, 2]] ** 2).sum()), rel=0.02)
+    quick = Readout(input_resistance_MOhm=0.01)
+    slow, fast = (
+        simulated(kernel, np.array([1]), readout=quick, speed_mm_per_s=speed, sampling_Hz=50.0 * speed, **NOMINAL)[1]
+        for speed in (10.0, 20.0)
+    )
+    assert np.abs(fast.voltage_V).max() == pytest.approx(2.0 * np.abs(slow.voltage_V).max(), rel=0.01)
 
 
 @for_each("beside", ["voltage_3_V", "voltage_1_V", "voltage_2_mV"])

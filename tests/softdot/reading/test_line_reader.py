@@ -1,0 +1,173 @@
+"""The reader of a line that slides by: what must hold of it whatever the line."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from foundation.errors import InputError
+from geometry.braille_standards import standard
+from softdot.reading.cells import cells_of, text_of
+from softdot.reading.conditions import HAND
+from softdot.reading.decoders.track import NoDotError, track_slide
+from softdot.reading.line_filter.charge import ChargeBlocks
+from softdot.reading.line_filter.line_reader import LineReader
+from softdot.reading.line_filter.mains import hum_frequency_Hz, hum_state, without_hum
+from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, line_table
+from softdot.reading.voltages import Voltages
+from tests.cases import for_each
+from tests.softdot.reading.lines import READOUT, simulated
+from tests.softdot.reading.made_kernel import made_kernel
+
+TEXT = "read by touch"
+MARBURG = standard("marburg-medium")
+FAST = {"speed_mm_per_s": 60.0, "seed": 3}
+
+
+@cache
+def shared_kernel():
+    return made_kernel()
+
+
+@cache
+def line(**changed):
+    """The reader and the voltages of the text."""
+    return simulated(shared_kernel(), cells_of(TEXT), **{**FAST, **changed})
+
+
+def text_read(reader, heard):
+    return text_of(track_slide(reader, heard).cells)
+
+
+def in_parts(voltage, length):
+    """The cells of voltages that come in parts, and how many were given out before the last part."""
+    reader = LineReader(shared_kernel(), MARBURG, READOUT, 500.0)
+    found = []
+    for begin in range(0, len(voltage), length):
+        found += reader.push(voltage[begin : begin + length])
+    early = len(found)
+    return found + reader.finish(), early
+
+
+def test_parts_of_any_length_give_the_same_cells():
+    """To the last bit, and most of them before the end."""
+    voltage = line()[1].voltage_V
+    whole, _ = in_parts(voltage, len(voltage))
+    assert text_of([one.cell for one in whole]) == TEXT
+    for length in (1, 37):
+        parts, early = in_parts(voltage, length)
+        assert parts == whole
+        assert early >= len(whole) - 3
+
+
+def test_what_comes_later_changes_no_cell_that_was_given_out():
+    voltage = line()[1].voltage_V
+    cut = len(voltage) * 3 // 4
+    other = np.concatenate([voltage[:cut], np.random.default_rng(0).normal(0.0, 0.05, (400, 6))])
+    readers = [LineReader(shared_kernel(), MARBURG, READOUT, 500.0) for _ in range(2)]
+    early = [reader.push(whole[:cut]) for reader, whole in zip(readers, (voltage, other), strict=True)]
+    assert early[0] == early[1]
+    assert len(early[0]) >= 3
+
+
+@for_each(
+    "changed",
+    [
+        {"leftward": True},
+        {"reversed_all": True},
+        {"gain_scatter": 0.2},
+        {"dead_channel": 3.0},
+        {"hum_mV": 20.0, "hum_Hz": 47.3, "hum_third": 0.2},
+        {"skew_deg": 0.6, "offset_mm": 0.3},
+        {"drift_mV": 5.0},
+        {"speed_cv": 0.2, "pauses": 1.0, "ways_back": 1.0},
+    ],
+)
+def test_what_a_hand_does_is_read_through(changed):
+    assert text_read(*line(**changed)) == TEXT
+
+
+def test_what_was_found_of_the_line_is_told():
+    report = track_slide(*line(leftward=True, reversed_all=True, dead_channel=3.0)).report
+    assert report.leftward
+    assert report.dead == (3,)
+    assert (np.delete(report.gain, 2) < 0.0).all()
+    humming = track_slide(*line(hum_mV=20.0, hum_Hz=47.3, hum_third=0.2)).report
+    assert humming.hum_Hz == pytest.approx(47.3, abs=0.05)
+
+
+def test_a_constant_factor_changes_nothing():
+    """Charges are compared with those of the first seconds; a power of two changes no digit."""
+    voltage = line()[1].voltage_V
+    assert in_parts(4.0 * voltage, 500)[0] == in_parts(voltage, 500)[0]
+
+
+@for_each("hum_mV", [0.0, 20.0])
+def test_silence_is_no_text(hum_mV):
+    reader, heard = line()
+    noise = 1e-3 * np.random.default_rng(0).standard_normal(heard.voltage_V.shape)
+    hum = 1e-3 * hum_mV * np.sin(2.0 * np.pi * 51.0 * heard.time_s)[:, None]
+    with pytest.raises(NoDotError, match="nothing stands out of their noise"):
+        track_slide(reader, Voltages(heard.time_s, noise + hum))
+
+
+def test_what_is_no_braille_is_not_certain():
+    """Voltages as loud as those of dots, without any order."""
+    reader, heard = line()
+    random = np.random.default_rng(0)
+    rough = np.cumsum(random.standard_normal(heard.voltage_V.shape), axis=0)
+    rough -= np.linspace(0.0, 1.0, len(rough))[:, None] * rough[-1]
+    loud = np.concatenate([1e-4 * random.standard_normal((200, 6)), 0.04 * rough / rough.std()])
+    track = track_slide(reader, Voltages(heard.step_s * np.arange(len(loud)), loud))
+    assert not track.is_braille
+    assert not track.is_whole
+
+
+def test_bad_voltages_are_one_sentence():
+    reader = LineReader(shared_kernel(), MARBURG, READOUT, 500.0)
+    with pytest.raises(InputError, match=r"voltages: have the size \(3, 5\), the kernel has 6 segments"):
+        reader.push(np.zeros((3, 5)))
+    with pytest.raises(InputError, match="not finite"):
+        reader.push(np.full((3, 6), np.nan))
+
+
+def test_the_table_holds_the_charges_of_the_kernel():
+    """Dots of two columns at the places that the table is for, single ones turned too."""
+    kernel = shared_kernel()
+    table = line_table(kernel, MARBURG, is_mirrored=False)
+    depth = 0.75 * kernel.depth_mm[-1]
+    random = np.random.default_rng(2)
+    for row in random.integers(0, len(table.within), 20):
+        place = (row + 0.5) * table.step_mm + 0.5 * table.cell_pitch_mm  # of the array's middle
+        columns = np.array([0.0, 2.5, 6.0, 8.5, 12.0])
+        x = np.sort(columns[columns > place - 3.0])[:2] - place
+        pattern, offset = int(random.integers(1, 64)), int(random.integers(0, len(OFFSETS_MM)))
+        there = [(x[dot // 3], 2.5 * (dot % 3 - 1) - OFFSETS_MM[offset]) for dot in range(6) if pattern >> dot & 1]
+        at = np.array(there).T[:, None, :]
+        exact = kernel.of_many(at[0], at[1], np.full(at[0].shape, depth))[0][0]
+        found = table.charge[len(YAWS_DEG) // 2, row, offset, pattern]
+        np.testing.assert_allclose(found, exact, atol=0.03 * table.largest_pC)
+
+
+def test_blocks_of_charge_are_the_integral():
+    """A constant 1 V on 20 pF and 10 MOhm: 20 pC, and 100 nC a second."""
+    blocks = ChargeBlocks(np.full(1, 20e-12), np.full(1, 1e7), np.zeros(1), 5, 1e-3)
+    charge = blocks.add(np.ones((10, 1)))[:, 0]
+    np.testing.assert_allclose(charge, 20.0 + 100.0 * (np.array([3.0, 8.0]) - 0.5))
+
+
+def test_a_drifting_hum_is_followed():
+    """From 57.2 Hz on by 0.1 Hz in 10 s, with a third harmonic: a fiftieth is left."""
+    time = np.arange(5000) / 500.0
+    phase = 2.0 * np.pi * (57.2 * time + 0.005 * time**2)
+    hum = np.stack([np.sin(phase) + 0.2 * np.sin(3.0 * phase), 0.5 * np.cos(phase)], axis=1)
+    frequency = hum_frequency_Hz(hum[:1000], 500.0)
+    state, amplitude = hum_state(hum[:1000], 500.0, frequency)
+    rest = without_hum(hum, state, amplitude, 2.0 * np.pi * 0.5 / 500.0)
+    assert np.abs(rest[1000:]).max() < 0.02 * 1.2
+    assert state[0] * 500.0 / (2.0 * np.pi) == pytest.approx(57.3, abs=0.02)
+
+
+def test_the_preset_of_a_hand_is_read():
+    track = track_slide(*line(**HAND, seed=5))
+    assert text_of(track.cells) == TEXT
