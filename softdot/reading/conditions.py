@@ -61,8 +61,6 @@ BOUNDS: dict[str, tuple[float, float]] = {
 """Condition -> its least and largest value."""
 CHANNELS = ("dead_channel", "swapped_channel", "reversed_channel")
 """Conditions that number a channel."""
-WHOLE = ("pauses", "ways_back", "contact_losses", *CHANNELS)
-"""Conditions that count or number something."""
 HAND: dict[str, float] = {
     "speed_mm_per_s": 40.0,
     "speed_cv": 0.2,
@@ -88,7 +86,7 @@ class ReadingConditions:
     depth_mm or force_N : depth of nominal dots below the resting top, or force on all dots. height_mm : of all dots,
     which are deeper by its excess over the nominal one. worn, missing : shares of the dots. speed_cv, speed_time_s :
     standard deviation of the logarithm of the speed, and its correlation time. pauses, ways_back, contact_losses :
-    their number in the line. skew_deg : angle of the path with the line. hum_mV : amplitude; hum_third : of its third
+    their mean number in the line. skew_deg : angle of the path with the line. hum_mV : amplitude; hum_third : of its third
     harmonic over it. drift_mV : standard deviation of a slow voltage. dead_channel, swapped_channel (with the next
     one), reversed_channel : numbers from 1, 0 for none. leftward : from right to left.
     """
@@ -141,7 +139,7 @@ class ReadingConditions:
                 raise InputError(f"{option_name(name)} = {value:g}: must be from {low:g} to {high:g}")
         if self.seed < 0:
             raise InputError(f"--seed = {self.seed}: must be at least 0")
-        for name in WHOLE:
+        for name in CHANNELS:
             if getattr(self, name) != round(getattr(self, name)):
                 raise InputError(f"{option_name(name)} = {getattr(self, name):g}: must be a whole number")
         if self.force_N is not None and self.contact_losses:

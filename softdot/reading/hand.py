@@ -34,7 +34,7 @@ def hand_course(
     way_mm: float, step_s: float, conditions: ReadingConditions, random: np.random.Generator
 ) -> HandCourse:
     """The course of a hand over a way, with the pauses and ways back of the conditions at random places."""
-    backs = np.sort(random.uniform(0.1, 0.9, round(conditions.ways_back))) * way_mm
+    backs = np.sort(random.uniform(0.1, 0.9, how_many(conditions.ways_back, random))) * way_mm
     lengths = np.minimum(random.uniform(*WAY_BACK_MM, len(backs)), 0.9 * backs)
     turns, travelled = [0.0], [0.0]
     for place, length in zip(backs, lengths, strict=True):
@@ -44,7 +44,7 @@ def hand_course(
     travelled.append(travelled[-1] + way_mm - turns[-1])
     turns.append(way_mm)
     moved = _moved_mm(travelled[-1], step_s, conditions, random)
-    pauses = round(conditions.pauses)
+    pauses = how_many(conditions.pauses, random)
     begins = np.sort(random.uniform(0.1, 0.9, pauses)) * len(moved)
     lasting = random.uniform(*PAUSE_S, pauses) / step_s
     still = np.zeros(len(moved))
@@ -53,6 +53,11 @@ def hand_course(
     steps: Floats = np.arange(int(number[-1]) + 1, dtype=np.float64)
     even = np.interp(steps, number, moved)
     return HandCourse(step_s * steps, np.interp(even, travelled, turns))
+
+
+def how_many(mean: float, random: np.random.Generator) -> int:
+    """A number of events: the mean where it is whole, else one of its neighbours, so that their mean is that."""
+    return int(mean) + int(mean % 1.0 > 0.0 and random.random() < mean % 1.0)
 
 
 def _moved_mm(way_mm: float, step_s: float, conditions: ReadingConditions, random: np.random.Generator) -> Floats:
@@ -80,8 +85,8 @@ def wander_mm(count: int, step_s: float, conditions: ReadingConditions, random: 
     from scipy.signal import lfilter
 
     fade = float(np.exp(-2.0 * np.pi * WANDER_HZ * step_s))
-    kicks = (1.0 - fade) * random.standard_normal((2, count + 20_000))
-    slow = lfilter([1.0], [1.0, -fade], lfilter([1.0 - fade], [1.0, -fade], kicks[0]))[-count:]
+    once = lfilter([1.0 - fade], [1.0, -fade], random.standard_normal(count + 20_000))
+    slow = lfilter([1.0 - fade], [1.0, -fade], once)[-count:]
     size = np.sqrt((1.0 - fade) ** 4 * (1.0 + fade**2) / (1.0 - fade**2) ** 3)
     return np.asarray(conditions.wander_mm * np.clip(slow / size, -3.0, 3.0))
 
@@ -89,7 +94,7 @@ def wander_mm(count: int, step_s: float, conditions: ReadingConditions, random: 
 def lift_share(time_s: Floats, conditions: ReadingConditions, random: np.random.Generator) -> Floats:
     """Share (t,) from 0 to 1 by which the array is lifted from the line."""
     lifted = np.zeros(len(time_s))
-    for _ in range(round(conditions.contact_losses)):
+    for _ in range(how_many(conditions.contact_losses, random)):
         begin = random.uniform(0.15, 0.85) * time_s[-1]
         outside = np.maximum(begin - time_s, time_s - begin - conditions.contact_loss_s)
         lifted = np.maximum(lifted, np.clip(1.0 - outside / LIFT_S, 0.0, 1.0))

@@ -16,7 +16,7 @@ from softdot.arrays.kernel import ArrayKernel
 from softdot.config.errors import sentence
 from softdot.config.toml import parse_toml
 from softdot.reading.cells import cells_of
-from softdot.reading.conditions import BOUNDS, ReadingConditions, standard_of
+from softdot.reading.conditions import BOUNDS, CHANNELS, ReadingConditions, standard_of
 from softdot.reading.decoders import named_decoders
 
 DEFAULT_TEXT = (
@@ -79,6 +79,8 @@ def default_axes(kernel: ArrayKernel, base: ReadingConditions) -> dict[str, tupl
         "yaw_deg": (0.0, 2.5, 5.0, 10.0, 15.0),
         "height_mm": below,
         "worn": (0.0, 0.1, 0.25, 0.5, 1.0),
+        "speed_cv": (0.0, 0.1, 0.2, 0.3),
+        "hum_mV": (0.0, 5.0, 10.0, 20.0),
     }
 
 
@@ -103,6 +105,8 @@ def _refuse_bad_study(study: ReadingStudy, where: str) -> None:
     for name, values in study.axes.items():
         if name not in BOUNDS:
             raise InputError(f"{where}: axes.{name} is no condition with a number; known are {', '.join(BOUNDS)}")
+        if name in CHANNELS and not study.combine:
+            raise InputError(f"{where}: axes.{name}: the number of a channel has no limit; set combine = true")
         if not values:
             raise InputError(f"{where}: axes.{name} = []: needs at least one value")
         for value in values:

@@ -90,7 +90,7 @@ def test_bad_requests_are_one_sentence(kernel_folder, tmp_path, capfd):
         (): "text: is empty",
         ("a", "--depth-mm", "0.9"): "--depth-mm = 0.9: with scatter",
         ("a", "--decoders", "oracle"): "--decoders = 'oracle': 'oracle' is none of model, threshold, learned",
-        ("a", "--pauses", "1.5"): "--pauses = 1.5: must be a whole number",
+        ("a", "--dead-channel", "1.5"): "--dead-channel = 1.5: must be a whole number",
         ("a", "--dead-channel", "7"): "--dead-channel = 7: the array has 6 channels",
         ("a", "--hum-Hz", "60"): "--hum-Hz = 60.0: acts only with --hum-mV above 0",
         ("a", "--force-N", "1", "--contact-losses", "1"): "--contact-losses = 1: a held force keeps contact",
