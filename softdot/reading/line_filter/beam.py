@@ -17,7 +17,7 @@ PLACE, LOG_SPEED, MEAN_LOG_SPEED, LOG_WEIGHT = range(4)
 WAY, OFFSET, YAW, TOUCH, SEEN, COLUMNS = range(6)
 UNSEEN, KEPT_COLUMNS = 8, 16
 FORTH, STILL, BACK = 1, 0, -1
-MOST_CHILDREN = 120_000
+MOST_CHILDREN = 60_000
 """Room for the children of a step; those beyond are not looked at."""
 MOST_OPTIONS = 12
 CHANCE, CHANGE, NEW_WAY, ASIDE, TURN, CONTACT = range(6)
@@ -137,6 +137,20 @@ def advance(state, choice, drift, measured, temper, may_touch, sensor, settings,
     kept_state, kept_choice, kept_parent = _merged(made, made_choice, parent, count, best, settings)
     kept_drift = _drifted(kept_state, kept_choice, drift[kept_parent], measured, sensor, settings)
     return kept_state, kept_choice, kept_drift, _log_sum(kept_state[:, LOG_WEIGHT]) - _log_sum(state[:, LOG_WEIGHT])
+
+
+@nb.njit(cache=True)
+def weighed(state, choice, drift, measured, sensor, settings):  # type: ignore[no-untyped-def]
+    """Hypotheses after they were weighed by the charges measured (n,), without a motion."""
+    made = state.copy()
+    for h in range(state.shape[0]):
+        row, first = _window(made[h, PLACE], sensor)
+        pattern = _pattern(choice[h], first) if choice[h, TOUCH] == 1 else 0
+        predicted = sensor.charge[choice[h, YAW], row, choice[h, OFFSET], pattern]
+        made[h, LOG_WEIGHT] += _log_likelihood(predicted, measured, drift[h], sensor, settings)
+    best = made[:, LOG_WEIGHT].max()
+    kept_state, kept_choice, parent = _merged(made, choice, np.arange(len(made)), len(made), best, settings)
+    return kept_state, kept_choice, drift[parent]
 
 
 @nb.njit(cache=True)

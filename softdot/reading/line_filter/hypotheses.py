@@ -34,7 +34,7 @@ BLANK = 0.3
 """Share of blank columns."""
 ROUGH_SHARE, DEGREES = 0.12, 5.0
 """Standard deviation of a charge over the charge, and degrees of freedom of Student's t."""
-KEPT_LOG, MOST_KEPT = 12.0, 2500
+KEPT_LOG, MOST_KEPT, EARLY_KEPT = 12.0, 2500, 12_000
 SPEED_FACTOR, SPEEDS = 3.0, 9
 """Factor about a rough speed within which speeds are tried, and their number."""
 FARTHEST_SHARE, NEAREST_MM, ENTRY_STEP_MM = 1.0, 0.4, 0.2
@@ -81,10 +81,16 @@ def settings(step_s: float) -> Settings:
     )
 
 
+def early_settings(step_s: float) -> Settings:
+    """The motion over the first column: what is rare is left out, and more hypotheses are kept."""
+    rare = dict.fromkeys(("log_jump", "log_stop", "log_back", "log_aside", "log_turn", "log_lift"), -1e9)
+    return settings(step_s)._replace(most_kept=EARLY_KEPT, **rare)  # type: ignore[arg-type]
+
+
 def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) -> Hypotheses:
     """The array meets the first column of a line: of its cell the first or the second, any pattern but a blank."""
     entries = np.arange(NEAREST_MM, 0.5 * FARTHEST_SHARE * table.cell_pitch_mm, ENTRY_STEP_MM)
-    offsets, yaws = range(0, len(OFFSETS_MM), 2), range(0, len(YAWS_DEG), 2)
+    offsets, yaws = range(0, len(OFFSETS_MM), 2), range(2, len(YAWS_DEG) - 2, 2)
     rows, chosen = [], []
     for column, pattern in product((0, 1), range(1, 8)):
         chance = log((FIRST_COLUMN if column == 0 else 1.0 - FIRST_COLUMN) / 7.0)
@@ -101,7 +107,7 @@ def _speeds(speed_mm_per_s: float) -> Floats:
 def anywhere(table: LineTable, best: Hypotheses, speeds: Floats) -> Hypotheses:
     """Around the place of one hypothesis, within half a cell to each side: any two columns, near postures and speeds.
 
-    Weights sum up to 1. speeds (s,) : logarithms.
+    speeds (s,) : logarithms.
     """
     pitch = table.cell_pitch_mm
     places = best.state[0, PLACE] + np.arange(-0.5 * pitch, 0.5 * pitch, 0.15)
@@ -115,7 +121,6 @@ def anywhere(table: LineTable, best: Hypotheses, speeds: Floats) -> Hypotheses:
             own = columns & ~0xFF | pattern >> 3 | (pattern & 7) << 4
             chosen.append((FORTH, aside, yaw, 1, seen, own))
     state, choice = np.array(rows), np.array(chosen, dtype=np.int64)
-    state[:, LOG_WEIGHT] -= np.log(np.exp(state[:, LOG_WEIGHT]).sum())
     return Hypotheses(state, choice, np.repeat(best.drift[:1], len(rows), axis=0))
 
 

@@ -24,8 +24,9 @@ from softdot.reading.line_filter.beam import (
     Sensor,
     advance,
     predicted_charges,
+    weighed,
 )
-from softdot.reading.line_filter.hypotheses import Hypotheses, anywhere, settings
+from softdot.reading.line_filter.hypotheses import Hypotheses, anywhere, early_settings, settings
 from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, LineTable
 
 LAG_COLUMNS = 4
@@ -42,6 +43,8 @@ PATIENCE_S = 0.6
 """Time that a new start has before the next one."""
 GAIN_S, GAIN_PRIOR_S, WIDEST_GAIN = 8.0, 2.0, 2.0
 """Memory of the gains that are followed, weight of the first ones, and how far they may go from these."""
+EARLY_STEPS = 10
+"""Steps at the beginning in which more hypotheses are kept."""
 NEAR_MM = 3.0
 """Way from the middle of a cell within which the fit counts for it."""
 
@@ -83,7 +86,7 @@ class LineFilter:
     def __post_init__(self) -> None:
         """Make room for children and products."""
         channels = self.table.charge.shape[-1]
-        self._settings = settings(self.step_s)
+        self._settings, self._early, self._steps = settings(self.step_s), early_settings(self.step_s), 0
         self._room = (
             np.empty((MOST_CHILDREN, 4)), np.empty((MOST_CHILDREN, 6), dtype=np.int64),
             np.empty(MOST_CHILDREN, dtype=np.int64),
@@ -126,19 +129,27 @@ class LineFilter:
 
     def step(self, charge_pC: Floats, temper: float, time_s: float) -> Floats:
         """Take the charges (n,) of the next step, and return the residuals (n,) of the best hypothesis."""
+        if self._steps == 0:
+            first = self.hypotheses
+            self._best = 0
+            self.hypotheses = Hypotheses(
+                *weighed(first.state, first.choice, first.drift, charge_pC, self.sensor, self._early)
+            )
         known = self.hypotheses
         largest = np.abs(charge_pC - known.drift[self._best]).max()
         state, choice, drift, evidence = advance(
             known.state, known.choice, known.drift, charge_pC, temper,
-            bool(largest > TOUCH_SHARE * self.table.largest_pC), self.sensor, self._settings, self._room,
+            bool(largest > TOUCH_SHARE * self.table.largest_pC), self.sensor,
+            self._early if self._steps < EARLY_STEPS else self._settings, self._room,
         )  # fmt: skip
+        self._steps += 1
         self.hypotheses = Hypotheses(state, choice, drift)
         self.evidence += evidence
         self._best = int(np.argmax(state[:, LOG_WEIGHT]))
         self.touching = bool(choice[self._best, TOUCH])
         residual = self._learn(charge_pC)
         self._note_time(time_s)
-        self._look_for_the_track()
+        self._look_for_the_track(charge_pC)
         return residual
 
     def _learn(self, charge_pC: Floats) -> Floats:
@@ -173,7 +184,7 @@ class LineFilter:
             if abs(self.place_mm - middle - number * pitch) <= NEAR_MM:
                 self._fits[number] = max(self._fits.get(number, 0.0), self.fit)
 
-    def _look_for_the_track(self) -> None:
+    def _look_for_the_track(self, charge_pC: Floats) -> None:
         """Start anew where the fit is bad, beside the hypotheses so far."""
         self._patience_s -= self.step_s
         if self.is_lost and self.fit < FOUND_FIT:
@@ -185,12 +196,15 @@ class LineFilter:
         best = self.best
         centre = float(best.state[0, LOG_SPEED])
         fresh = anywhere(self.table, best, centre + np.linspace(-1.0, 1.0, 7))
+        state, choice, drift = weighed(
+            fresh.state, fresh.choice, fresh.drift, charge_pC, self.sensor, self._settings
+        )
         known = self.hypotheses
-        known.state[:, LOG_WEIGHT] -= known.state[self._best, LOG_WEIGHT]
+        state[:, LOG_WEIGHT] += known.state[self._best, LOG_WEIGHT] - state[:, LOG_WEIGHT].max()
         self.hypotheses = Hypotheses(
-            np.concatenate([known.state, fresh.state]),
-            np.concatenate([known.choice, fresh.choice]),
-            np.concatenate([known.drift, fresh.drift]),
+            np.concatenate([known.state, state]),
+            np.concatenate([known.choice, choice]),
+            np.concatenate([known.drift, drift]),
         )
 
     def ready_cells(self, at_end: bool = False) -> list[PassedCell]:
