@@ -65,7 +65,9 @@ def add_read(commands: Any) -> None:
     for name, unit, meaning in READING_OPTIONS:
         read.add_argument(f"--{name}", type=float, metavar=unit, help=meaning)
     read.add_argument("--leftward", action="store_true", default=None, help="the array moves from right to left")
-    read.add_argument("--reversed-all", action="store_true", default=None, help="the polarity of all channels is turned")
+    read.add_argument(
+        "--reversed-all", action="store_true", default=None, help="the polarity of all channels is turned"
+    )
     read.add_argument("--preset", choices=("machine", "hand"), help="conditions of a machine (default) or a hand")
     read.add_argument("--seed", type=int, metavar="N", help="of scatter, tremor and noise, 0 by default")
     read.add_argument(

@@ -9,9 +9,7 @@ HUM_DRIFT_S, DRIFT_S = 2.0, 10.0
 """Correlation times of the frequency of the hum, and of the drift of the voltages."""
 
 
-def disturbed(
-    voltage_V: Floats, time_s: Floats, conditions: ReadingConditions, random: np.random.Generator
-) -> Floats:
+def disturbed(voltage_V: Floats, time_s: Floats, conditions: ReadingConditions, random: np.random.Generator) -> Floats:
     """Voltages (t, n) as they are recorded of those behind the film."""
     channels = voltage_V.shape[1]
     noise = 1e-3 * conditions.noise_mV * random.standard_normal(voltage_V.shape)

@@ -30,9 +30,7 @@ class HandCourse:
     place_mm: Floats
 
 
-def hand_course(
-    way_mm: float, step_s: float, conditions: ReadingConditions, random: np.random.Generator
-) -> HandCourse:
+def hand_course(way_mm: float, step_s: float, conditions: ReadingConditions, random: np.random.Generator) -> HandCourse:
     """The course of a hand over a way, with the pauses and ways back of the conditions at random places."""
     backs = np.sort(random.uniform(0.1, 0.9, how_many(conditions.ways_back, random))) * way_mm
     lengths = np.minimum(random.uniform(*WAY_BACK_MM, len(backs)), 0.9 * backs)

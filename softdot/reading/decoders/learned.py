@@ -83,7 +83,9 @@ def _train_network(of: _ReaderKey, presses: bool) -> Any:
     else:
         place = np.interp(heard.time_s, path.time_s, path.x_mm)
         middles = cell_pitch_mm(reader.standard) * np.arange(TRAINING_CELLS, dtype=np.float64)
-        features = np.concatenate([_slide_features(heard.voltage_V, place, middles + error) for error in PLACE_ERRORS_MM])
+        features = np.concatenate(
+            [_slide_features(heard.voltage_V, place, middles + error) for error in PLACE_ERRORS_MM]
+        )
         shown = np.tile(dots_of_cells(cells), (len(PLACE_ERRORS_MM), 1))
     network = MLPClassifier(
         HIDDEN_LAYERS, alpha=WEIGHT_PENALTY, max_iter=MOST_EPOCHS, early_stopping=True, random_state=SEED

@@ -11,7 +11,6 @@ from softdot.reading.line_filter.beam import (
     COLUMNS,
     FORTH,
     KEPT_COLUMNS,
-    LOG_WEIGHT,
     OFFSET,
     PLACE,
     SEEN,
@@ -146,4 +145,3 @@ def _with_unseen(choice: Ints, last: int) -> tuple[int, int]:
     mask = (1 << 4 * KEPT_COLUMNS) - 1
     columns &= mask
     return columns - (1 << 64) if columns >> 63 else columns, seen
-

@@ -1,4 +1,4 @@
-"""The filter of one direction: all hypotheses of where the array is and what has passed, and the cells they agree on."""
+"""The filter of one direction: all hypotheses of where the array is and what passed, and the cells they agree on."""
 
 from collections import deque
 from dataclasses import dataclass, field
@@ -154,7 +154,9 @@ class LineFilter:
 
     def _learn(self, charge_pC: Floats) -> Floats:
         """Follow fit and gains by the best hypothesis; the residuals (n,) that it leaves."""
-        predicted = predicted_charges(self.hypotheses.state[self._best], self.hypotheses.choice[self._best], self.sensor)
+        predicted = predicted_charges(
+            self.hypotheses.state[self._best], self.hypotheses.choice[self._best], self.sensor
+        )
         heard = charge_pC - self.hypotheses.drift[self._best]
         alive, gain = self.sensor.alive, self.sensor.gain
         residual = heard - gain * predicted
@@ -196,9 +198,7 @@ class LineFilter:
         best = self.best
         centre = float(best.state[0, LOG_SPEED])
         fresh = anywhere(self.table, best, centre + np.linspace(-1.0, 1.0, 7))
-        state, choice, drift = weighed(
-            fresh.state, fresh.choice, fresh.drift, charge_pC, self.sensor, self._settings
-        )
+        state, choice, drift = weighed(fresh.state, fresh.choice, fresh.drift, charge_pC, self.sensor, self._settings)
         known = self.hypotheses
         state[:, LOG_WEIGHT] += known.state[self._best, LOG_WEIGHT] - state[:, LOG_WEIGHT].max()
         self.hypotheses = Hypotheses(

@@ -138,9 +138,7 @@ def _lone_charges(kernel: ArrayKernel, along: Floats, across: Floats, channels: 
     return np.stack(found)
 
 
-def _beside(
-    kernel: ArrayKernel, along: Floats, across: Floats, bits: Floats, channels: Ints, lone: Floats
-) -> Floats:
+def _beside(kernel: ArrayKernel, along: Floats, across: Floats, bits: Floats, channels: Ints, lone: Floats) -> Floats:
     """What dots beside each other add to the sum of single ones (place, offset, 64, n), not turned.
 
     It changes slowly: every third place and every other offset is looked up, the rest taken from the nearest one on
