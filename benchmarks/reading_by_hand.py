@@ -28,7 +28,12 @@ from softdot.reading.score import align, rate
 from softdot.reading.voltages import Reader, Voltages, record_voltages
 from solve.model import Readout
 
-WORDS = ["alice", "was", "beginning", "to", "get", "very", "tired", "of", "sitting", "by", "her", "sister", "on", "the", "bank,", "and", "of", "having", "nothing", "to", "do:", "once", "or", "twice", "she", "had", "peeped", "into", "the", "book", "her", "sister", "was", "reading,", "but", "it", "had", "no", "pictures", "or", "conversations", "in", "it;", "the", "hot", "day", "made", "her", "feel", "very", "sleepy", "and", "stupid,", "whether", "the", "pleasure", "of", "making", "a", "daisy", "chain", "would", "be", "worth", "the", "trouble", "of", "getting", "up", "and", "picking", "the", "daisies,", "when", "suddenly", "a", "white", "rabbit", "with", "pink", "eyes", "ran", "close", "by", "her"]
+TEXT = (
+    "alice was beginning to get very tired of sitting by her sister on the bank, and of having nothing to do: once or "
+    "twice she had peeped into the book her sister was reading, but it had no pictures or conversations in it; the "
+    "hot day made her feel very sleepy and stupid, whether the pleasure of making a daisy chain would be worth the "
+    "trouble of getting up and picking the daisies, when suddenly a white rabbit with pink eyes ran close by her"
+)
 LINE_CHARACTERS = 40
 HAND = {"speed_mm_per_s": 40.0, "speed_cv": 0.2, "speed_time_s": 0.5}
 ALL = {"pauses": 2, "ways_back": 2, "wander_mm": 0.3, "skew_deg": 0.57, "hum_mV": 20.0, "hum_drift_Hz": 0.05,
@@ -89,9 +94,10 @@ def drawn(conditions: dict[str, Any], random: np.random.Generator) -> dict[str, 
 
 def line_of_words(random: np.random.Generator) -> str:
     """Some words of the text in a row, about a line long."""
-    begin = int(random.integers(0, len(WORDS) - 12))
+    words = TEXT.split()
+    begin = int(random.integers(0, len(words) - 12))
     found = ""
-    for word in WORDS[begin:]:
+    for word in words[begin:]:
         if len(found) + len(word) > LINE_CHARACTERS:
             break
         found += f" {word}"

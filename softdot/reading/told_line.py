@@ -1,4 +1,4 @@
-"""What a reading says of the line besides its text: direction, speed, hum, channels, lost track, and doubts in sentences."""
+"""What a reading says of a line besides its text: direction, speed, hum, channels, lost track, doubts in sentences."""
 
 from typing import Any
 

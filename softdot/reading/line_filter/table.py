@@ -35,9 +35,8 @@ class LineTable:
     charge (yaw, place, offset, 64, n) in pC : of the channels in use, numbered by channels (n,). Bits 0 to 2 of a
     pattern are the column behind, 3 to 5 the next one. within (place,) : whether the column behind is the second one
     of its cell. is_mirrored : the array moves from right to left, and a cell's right column comes first. largest_pC :
-    largest charge of a channel by one dot. high_pC (n,) :
-    what one of twenty places and patterns exceeds. slope_pC_per_mm : root mean square of the change of charge along the line;
-    spread_pC : of the charge about its mean.
+    largest charge of a channel by one dot. high_pC (n,) : what one of twenty places and patterns exceeds.
+    slope_pC_per_mm : root mean square of the change of charge along the line; spread_pC : of the charge about its mean.
     """
 
     charge: Floats
