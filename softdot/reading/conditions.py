@@ -87,8 +87,8 @@ class ReadingConditions:
     which are deeper by its excess over the nominal one. worn, missing : shares of the dots. speed_cv, speed_time_s :
     standard deviation of the logarithm of the speed, and its correlation time. pauses, ways_back, contact_losses :
     their mean number in the line. skew_deg : angle of the path with the line. hum_mV : amplitude; hum_third : of its
-    third harmonic over it. drift_mV : standard deviation of a slow voltage. dead_channel, swapped_channel (with the next
-    one), reversed_channel : numbers from 1, 0 for none. leftward : from right to left.
+    third harmonic over it. drift_mV : standard deviation of a slow voltage. dead_channel, swapped_channel (with the
+    next one), reversed_channel : numbers from 1, 0 for none. leftward : from right to left.
     """
 
     standard: str | None = None

@@ -10,7 +10,7 @@ from softdot.reading.line_filter.table import HIGH, LineTable
 
 ONSET_SIGMA, ONSET_S = 8.0, 0.008
 """Standard deviations of the noise above which a mean over this time is a signal."""
-QUIET_S = 0.1
+QUIET_S = 0.02
 """Least time before the first signal that gives the resting voltages."""
 RESTING_PRIOR_V = 2e-3
 """Assumed standard deviation of a resting voltage."""

@@ -1,7 +1,7 @@
 """The filter of one direction: all hypotheses of where the array is and what passed, and the cells they agree on."""
 
 from collections import deque
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -80,6 +80,8 @@ class LineFilter:
     _now_s: float = 0.0
     _patience_s: float = 0.0
     _times: deque[float] = field(default_factory=deque)
+    _safe_drift: Floats | None = None
+    _safe_log_speed: float = 0.0
     _fits: dict[int, float] = field(default_factory=dict)
     _products: Floats | None = None
 
@@ -94,6 +96,7 @@ class LineFilter:
         prior = GAIN_PRIOR_S / self.step_s * (0.3 * self.table.largest_pC) ** 2
         self._products = np.full((2, channels), prior)
         self._best = 0
+        self._safe_drift, self._safe_log_speed = self.hypotheses.drift[0], float(self.hypotheses.state[:, 1].mean())
 
     @property
     def best(self) -> Hypotheses:
@@ -166,6 +169,10 @@ class LineFilter:
         self.fit += share * (square - self.fit)
         if self.fit < FOUND_FIT and self.speed_mm_per_s != 0.0 and self.touching:
             assert self._products is not None
+            assert self._safe_drift is not None
+            known = self.best
+            self._safe_drift = self._safe_drift + share * (known.drift[0] - self._safe_drift)
+            self._safe_log_speed += share * (float(known.state[0, LOG_SPEED]) - self._safe_log_speed)
             fade = 1.0 - self.step_s / GAIN_S
             fair = np.abs(residual) < 4.0 * np.sqrt(variance)
             self._products = fade * self._products + fair * np.stack([predicted * heard, predicted**2])
@@ -195,9 +202,9 @@ class LineFilter:
             return
         self.is_lost, self._patience_s = True, PATIENCE_S
         self.losses += 1
-        best = self.best
-        centre = float(best.state[0, LOG_SPEED])
-        fresh = anywhere(self.table, best, centre + np.linspace(-1.0, 1.0, 7))
+        assert self._safe_drift is not None
+        best = replace(self.best, drift=self._safe_drift[None])
+        fresh = anywhere(self.table, best, self._safe_log_speed + np.linspace(-1.0, 1.0, 7))
         state, choice, drift = weighed(fresh.state, fresh.choice, fresh.drift, charge_pC, self.sensor, self._settings)
         known = self.hypotheses
         state[:, LOG_WEIGHT] += known.state[self._best, LOG_WEIGHT] - state[:, LOG_WEIGHT].max()

@@ -12,7 +12,7 @@ from softdot.reading.line_filter.beam import Sensor
 from softdot.reading.line_filter.channels import Channels, first_signal, measured_channels
 from softdot.reading.line_filter.charge import ChargeBlocks
 from softdot.reading.line_filter.hypotheses import Hypotheses, anywhere, at_the_first_column
-from softdot.reading.line_filter.line_filter import FLOOR_SHARE, LOST_FIT, LineFilter, PassedCell
+from softdot.reading.line_filter.line_filter import FLOOR_SHARE, FOUND_FIT, LOST_FIT, LineFilter, PassedCell
 from softdot.reading.line_filter.mains import BANDWIDTH_HZ, FREQUENCY, hum_frequency_Hz, hum_state, without_hum
 from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, LineTable, line_table
 from solve.model import Readout
@@ -237,11 +237,11 @@ class LineReader:
         better = self._better
         change = np.abs(charge_pC - self._last)[better.sensor.alive].max() / better.table.largest_pC * 1.5
         self._last = charge_pC
-        way = max(abs(better.speed_mm_per_s) * step_s, 0.5 * change)
+        way = max(abs(better.speed_mm_per_s) * step_s, change)
         temper = float(np.clip(way / CORRELATED_MM, LEAST_TEMPER, 1.0))
         residuals = [(one.step(charge_pC, temper, time_s), one) for one in self._filters]
         residual, better = max(residuals, key=lambda pair: pair[1].evidence)
-        if better.fit < LOST_FIT:
+        if better.fit < FOUND_FIT:
             floor = np.sqrt(better.sensor.floor_pC2)
             gain = better.sensor.drift_pC / np.hypot(better.sensor.drift_pC, floor)
             self._rate_pC += 0.25 * gain**2 / step_s * np.clip(residual, -2.0 * floor, 2.0 * floor)

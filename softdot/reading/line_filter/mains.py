@@ -16,27 +16,34 @@ HARMONICS = 3
 """The hum itself and the harmonics that are followed."""
 BANDWIDTH_HZ = 0.5
 """Of the amplitudes that are followed."""
-LEAST_PEAK = 8.0
-"""Least power of a line over the median of the powers around it."""
+LEAST_PEAK, ALIKE = 6.0, 0.9
+"""Least power of a line over the median of the powers around it, and least share of it with one phase."""
 FREQUENCY, PHASE = 0, 1
 """Places in the state: angular frequency per sample and phase."""
 
 
 def hum_frequency_Hz(voltage_V: Floats, sampling_Hz: float) -> float | None:
-    """The frequency of the hum in voltages (t, n), by the sum of their periodograms; None where there is none."""
+    """The frequency of the hum in voltages (t, n); None where there is none.
+
+    Hum has one phase in all channels, or the opposite one, so that its Fourier coefficients X have |sum of X^2| near
+    sum of |X|^2. Dots that pass one segment after the other have lines there too, but with a phase of their own in
+    each channel.
+    """
     count = len(voltage_V)
     if sampling_Hz < 2.5 * HIGHEST_HZ or count < sampling_Hz:
         return None
-    window = np.hanning(count)[:, None]
-    padded = 8 * count
-    power = (np.abs(np.fft.rfft(window * (voltage_V - voltage_V.mean(axis=0)), padded, axis=0)) ** 2).sum(axis=1)
+    window, padded = np.hanning(count)[:, None], 8 * count
+    lines = np.fft.rfft(window * (voltage_V - voltage_V.mean(axis=0)), padded, axis=0)
     frequency = np.fft.rfftfreq(padded, 1.0 / sampling_Hz)
-    inside = np.flatnonzero((frequency >= LOWEST_HZ) & (frequency <= HIGHEST_HZ))
-    peak = int(inside[np.argmax(power[inside])])
-    if peak in (inside[0], inside[-1]) or power[peak] < LEAST_PEAK * np.median(power[inside]):
+    inside = (frequency >= LOWEST_HZ) & (frequency <= HIGHEST_HZ)
+    frequency, lines = frequency[inside], lines[inside]
+    power, alike = (np.abs(lines) ** 2).sum(axis=1), np.abs((lines**2).sum(axis=1))
+    peak = int(np.argmax(alike))
+    if peak in (0, len(power) - 1) or power[peak] < LEAST_PEAK * np.median(power) or alike[peak] < ALIKE * power[peak]:
         return None
     left, middle, right = np.log(power[peak - 1 : peak + 2])
-    return float(frequency[peak] + 0.5 * (left - right) / (left - 2.0 * middle + right) * frequency[1])
+    bend = left - 2.0 * middle + right
+    return float(frequency[peak] + (0.5 * (left - right) / bend if bend < 0.0 else 0.0) * (frequency[1] - frequency[0]))
 
 
 def hum_state(voltage_V: Floats, sampling_Hz: float, frequency_Hz: float | None) -> tuple[Floats, Floats]:

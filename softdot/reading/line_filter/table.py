@@ -57,26 +57,26 @@ class LineTable:
 
 
 class _Key:
-    """A kernel as a key of a cache: itself alone."""
+    """A kernel, itself alone, and a standard as a key of a cache."""
 
-    def __init__(self, kernel: ArrayKernel) -> None:
-        self.kernel = kernel
+    def __init__(self, kernel: ArrayKernel, chosen: BrailleStandard) -> None:
+        self.kernel, self.chosen = kernel, chosen
 
     def __hash__(self) -> int:
-        return id(self.kernel)
+        return hash((id(self.kernel), self.chosen.name))
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Key) and other.kernel is self.kernel
+        return isinstance(other, _Key) and other.kernel is self.kernel and other.chosen == self.chosen
 
 
 def line_table(kernel: ArrayKernel, chosen: BrailleStandard, is_mirrored: bool) -> LineTable:
     """The table of a kernel for a standard, in the direction of reading or mirrored; kept for the next call."""
-    return _kept_table(_Key(kernel), chosen, is_mirrored)
+    return _kept_table(_Key(kernel, chosen), is_mirrored)
 
 
 @lru_cache(maxsize=4)
-def _kept_table(key: _Key, chosen: BrailleStandard, is_mirrored: bool) -> LineTable:
-    kernel = key.kernel
+def _kept_table(key: _Key, is_mirrored: bool) -> LineTable:
+    kernel, chosen = key.kernel, key.chosen
     dots, pitch = dot_places_mm(chosen), cell_pitch_mm(chosen)
     spacing = float(np.ptp(dots[:, 0]))
     behind = -pitch / 2.0  # place of the window's rear end from the array's middle
