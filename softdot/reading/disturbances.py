@@ -4,6 +4,7 @@ import numpy as np
 
 from foundation.arrays import Floats
 from softdot.reading.conditions import ReadingConditions
+from softdot.reading.hand import slow_process
 
 HUM_DRIFT_S, DRIFT_S = 2.0, 10.0
 """Correlation times of the frequency of the hum, and of the drift of the voltages."""
@@ -38,7 +39,7 @@ def _hum_V(time_s: Floats, conditions: ReadingConditions, random: np.random.Gene
     if conditions.hum_mV == 0.0:
         return np.zeros(len(time_s))
     step = float(time_s[1] - time_s[0])
-    drift = conditions.hum_drift_Hz * _slow(len(time_s), step / HUM_DRIFT_S, random) if conditions.hum_drift_Hz else 0.0
+    drift = conditions.hum_drift_Hz * slow_process(len(time_s), step / HUM_DRIFT_S, random) if conditions.hum_drift_Hz else 0.0
     phase = start + 2.0 * np.pi * (conditions.hum_Hz * time_s + step * np.cumsum(drift * np.ones(len(time_s))))
     return 1e-3 * conditions.hum_mV * np.asarray(np.sin(phase) + conditions.hum_third * np.sin(3.0 * phase))
 
@@ -50,13 +51,4 @@ def _drift_V(
     if conditions.drift_mV == 0.0:
         return 0.0
     step = float(time_s[1] - time_s[0]) / DRIFT_S
-    return 1e-3 * conditions.drift_mV * np.stack([_slow(len(time_s), step, random) for _ in range(channels)], axis=1)
-
-
-def _slow(count: int, share: float, random: np.random.Generator) -> Floats:
-    """An Ornstein-Uhlenbeck process (t,) with standard deviation 1; share : step over its correlation time."""
-    from scipy.signal import lfilter
-
-    fade = float(np.exp(-share))
-    kicks = np.sqrt(1.0 - fade**2) * random.standard_normal(count)
-    return np.asarray(lfilter([1.0], [1.0, -fade], kicks, zi=[fade * random.standard_normal()])[0])
+    return 1e-3 * conditions.drift_mV * np.stack([slow_process(len(time_s), step, random) for _ in range(channels)], axis=1)

@@ -80,13 +80,18 @@ def wander_mm(count: int, step_s: float, conditions: ReadingConditions, random: 
     """Slow wander (t,) across the line with the standard deviation of the conditions."""
     if conditions.wander_mm == 0.0:
         return np.zeros(count)
+    slow = slow_process(count, 2.0 * np.pi * WANDER_HZ * step_s, random)
+    return np.asarray(conditions.wander_mm * np.clip(slow, -3.0, 3.0))
+
+
+def slow_process(count: int, share: float, random: np.random.Generator) -> Floats:
+    """A process (t,) with standard deviation 1: white noise behind two low-passes; share : step over their time."""
     from scipy.signal import lfilter
 
-    fade = float(np.exp(-2.0 * np.pi * WANDER_HZ * step_s))
-    once = lfilter([1.0 - fade], [1.0, -fade], random.standard_normal(count + 20_000))
-    slow = lfilter([1.0 - fade], [1.0, -fade], once)[-count:]
-    size = np.sqrt((1.0 - fade) ** 4 * (1.0 + fade**2) / (1.0 - fade**2) ** 3)
-    return np.asarray(conditions.wander_mm * np.clip(slow / size, -3.0, 3.0))
+    fade, warm = float(np.exp(-share)), min(int(10.0 / share), 200_000)
+    once = lfilter([1.0 - fade], [1.0, -fade], random.standard_normal(count + warm))
+    slow = lfilter([1.0 - fade], [1.0, -fade], once)[warm:]
+    return np.asarray(slow / np.sqrt((1.0 - fade) ** 4 * (1.0 + fade**2) / (1.0 - fade**2) ** 3))
 
 
 def lift_share(time_s: Floats, conditions: ReadingConditions, random: np.random.Generator) -> Floats:

@@ -10,6 +10,8 @@ from softdot.reading.line_filter.table import HIGH, LineTable
 
 ONSET_SIGMA, ONSET_S = 8.0, 0.008
 """Standard deviations of the noise above which a mean over this time is a signal."""
+FIRST_MEANS = 6
+"""Number of such means at the beginning from which a signal stands out."""
 QUIET_S = 0.02
 """Least time before the first signal that gives the resting voltages."""
 RESTING_PRIOR_V = 2e-3
@@ -18,6 +20,8 @@ DEAD_SHARE, SILENT_SHARE = 0.15, 0.4
 """Shares of the gain of others below which a channel counts as dead, or a
 whole row as one without dots.
 """
+DEAD_LOUDNESS = 2.0
+"""Root mean square of voltages over that of their noise below which a channel has no signal."""
 WIDEST_GAIN = 1.5
 """Largest ratio of the gain of a channel and the common one that is taken from the first seconds."""
 SMOOTHED_S = 0.006
@@ -50,7 +54,7 @@ def first_signal(voltage_V: Floats, step_s: float) -> int | None:
         return None
     mean = voltage_V[: count * many].reshape(count, many, -1).mean(axis=1)
     floor = 1e-6 * float(np.abs(voltage_V).max()) + 1e-12
-    level = np.abs(mean - np.median(mean, axis=0)) / np.maximum(noise_V(voltage_V) / np.sqrt(many), floor)
+    level = np.abs(mean - np.median(mean[:FIRST_MEANS], axis=0)) / np.maximum(noise_V(voltage_V) / np.sqrt(many), floor)
     loud = np.flatnonzero((level > ONSET_SIGMA).any(axis=1))
     return None if len(loud) == 0 else int(loud[0]) * many
 
@@ -74,11 +78,21 @@ def measured_channels(
     flat = voltage_V - resting
     leaked = np.cumsum(flat, axis=0) * step_s / resistance
     charge = 1e12 * (capacitance * flat + leaked)[max(onset, 0) :]
-    gain, alive = _gains(charge, is_inside, table, places)
+    loud = _loudness(flat[max(onset, 0) :], noise, step_s)
+    gain, alive = _gains(charge, loud, is_inside, table, places)
     return Channels(resting, noise, gain, alive, onset, is_inside, _speed(charge * np.sign(gain), step_s, alive, table))
 
 
-def _gains(charge_pC: Floats, is_inside: bool, table: LineTable, places: Floats) -> tuple[Floats, Bools]:
+def _loudness(voltage_V: Floats, noise_V: Floats, step_s: float) -> Floats:
+    """Root mean square (n,) of means of the voltages over that of their noise; large where there is none."""
+    many = max(1, round(ONSET_S / step_s))
+    count = len(voltage_V) // many
+    mean = voltage_V[: count * many].reshape(count, many, -1).mean(axis=1)
+    size = np.sqrt(np.mean(mean**2, axis=0))
+    return np.asarray(size / np.maximum(noise_V / np.sqrt(many), 1e-3 * size.max() + 1e-15))
+
+
+def _gains(charge_pC: Floats, loud: Floats, is_inside: bool, table: LineTable, places: Floats) -> tuple[Floats, Bools]:
     """Signed gain (n,) of each channel, and which are alive."""
     if is_inside:
         charge_pC = charge_pC - np.median(charge_pC, axis=0)
@@ -89,7 +103,9 @@ def _gains(charge_pC: Floats, is_inside: bool, table: LineTable, places: Floats)
     if is_inside:
         size = (high - low) / np.maximum(np.abs(table.high_pC), 1e-300)
     common = float(np.median(size[size >= np.median(size)]))
-    row = np.array([size[np.abs(places[:, 1] - y) < 0.1 * table.dot_pitch_mm].max() for y in places[:, 1]])
+    alike = np.abs(places[:, 1] - places[:, 1, None]) < 0.1 * table.dot_pitch_mm
+    size = np.where(loud < DEAD_LOUDNESS, 0.0, size)
+    row = np.where(alike, size, 0.0).max(axis=1)
     alive = size >= DEAD_SHARE * np.maximum(row, SILENT_SHARE * common * (row >= SILENT_SHARE * common))
     silent = row < SILENT_SHARE * common
     own = common * np.clip(size / max(common, 1e-300), 1.0 / WIDEST_GAIN, WIDEST_GAIN)

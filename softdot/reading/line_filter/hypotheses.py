@@ -31,7 +31,7 @@ this is assumed.
 """
 BLANK = 0.3
 """Share of blank columns."""
-ROUGH_SHARE, DEGREES = 0.12, 5.0
+ROUGH_SHARE, DEGREES = 0.25, 4.0
 """Standard deviation of a charge over the charge, and degrees of freedom of Student's t."""
 KEPT_LOG, MOST_KEPT, EARLY_KEPT = 12.0, 2500, 12_000
 SPEED_FACTOR, SPEEDS = 3.0, 9

@@ -12,7 +12,7 @@ from softdot.reading.line_filter.beam import Sensor
 from softdot.reading.line_filter.channels import Channels, first_signal, measured_channels
 from softdot.reading.line_filter.charge import ChargeBlocks
 from softdot.reading.line_filter.hypotheses import Hypotheses, anywhere, at_the_first_column
-from softdot.reading.line_filter.line_filter import FLOOR_SHARE, FOUND_FIT, LOST_FIT, LineFilter, PassedCell
+from softdot.reading.line_filter.line_filter import FLOOR_SHARE, LOST_FIT, LineFilter, PassedCell
 from softdot.reading.line_filter.mains import BANDWIDTH_HZ, FREQUENCY, hum_frequency_Hz, hum_state, without_hum
 from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, LineTable, line_table
 from solve.model import Readout
@@ -30,6 +30,8 @@ DIRECTION_EVIDENCE, DIRECTION_COLUMNS = 25.0, 6
 """Logarithm of the evidence that decides the direction, or columns after which the better one is taken."""
 DRIFT_SHARE = 7e-4
 """Least standard deviation of the drift in a step, over the largest charge of one dot."""
+RATE_SHARE = 0.08
+"""Gain of the resting voltages over the square of that of the drifts; a quarter would be critically damped."""
 CERTAIN = 0.9
 """Least probability of a cell that is given out as read."""
 
@@ -241,10 +243,9 @@ class LineReader:
         temper = float(np.clip(way / CORRELATED_MM, LEAST_TEMPER, 1.0))
         residuals = [(one.step(charge_pC, temper, time_s), one) for one in self._filters]
         residual, better = max(residuals, key=lambda pair: pair[1].evidence)
-        if better.fit < FOUND_FIT:
-            floor = np.sqrt(better.sensor.floor_pC2)
-            gain = better.sensor.drift_pC / np.hypot(better.sensor.drift_pC, floor)
-            self._rate_pC += 0.25 * gain**2 / step_s * np.clip(residual, -2.0 * floor, 2.0 * floor)
+        floor = np.sqrt(better.sensor.floor_pC2)
+        gain = better.sensor.drift_pC / np.hypot(better.sensor.drift_pC, floor)
+        self._rate_pC += RATE_SHARE * gain**2 / step_s * np.clip(residual, -2.0 * floor, 2.0 * floor)
         if self.course is not None:
             self.course.append((time_s, better.place_mm - 0.5 * better.table.dot_pitch_mm))
         if len(self._filters) > 1:
