@@ -24,6 +24,8 @@ DEAD_LOUDNESS = 2.0
 """Root mean square of voltages over that of their noise below which a channel has no signal."""
 WIDEST_GAIN = 1.5
 """Largest ratio of the gain of a channel and the common one that is taken from the first seconds."""
+BELIEVED = 0.5
+"""Exponent of that ratio: few dots have passed in the first seconds, and not all in the middle of their row."""
 SMOOTHED_S = 0.006
 """Time over which charges are averaged before their change is taken."""
 
@@ -108,7 +110,7 @@ def _gains(charge_pC: Floats, loud: Floats, is_inside: bool, table: LineTable, p
     row = np.where(alike, size, 0.0).max(axis=1)
     alive = size >= DEAD_SHARE * np.maximum(row, SILENT_SHARE * common * (row >= SILENT_SHARE * common))
     silent = row < SILENT_SHARE * common
-    own = common * np.clip(size / max(common, 1e-300), 1.0 / WIDEST_GAIN, WIDEST_GAIN)
+    own = common * np.clip(size / max(common, 1e-300), 1.0 / WIDEST_GAIN, WIDEST_GAIN) ** BELIEVED
     gain = np.where(silent, common, own)
     together = np.sign(np.sum(sign * size * ~silent))
     return np.where(silent, together, sign) * np.maximum(gain, 1e-12), alive | silent

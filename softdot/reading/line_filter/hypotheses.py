@@ -38,6 +38,8 @@ SPEED_FACTOR, SPEEDS = 3.0, 9
 """Factor about a rough speed within which speeds are tried, and their number."""
 FARTHEST_SHARE, NEAREST_MM, ENTRY_STEP_MM = 1.0, 0.4, 0.2
 """Distance at which the first column may be seen first: of half the window, and the nearest."""
+OFFSET_SPREAD_MM, YAW_SPREAD_DEG = 0.7, 6.0
+"""Standard deviations of the posture at the beginning, assumed."""
 FIRST_COLUMN = 0.85
 """Share of lines whose first dots are in the first column of their cell."""
 
@@ -94,7 +96,8 @@ def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) 
     for column, pattern in product((0, 1), range(1, 8)):
         chance = log((FIRST_COLUMN if column == 0 else 1.0 - FIRST_COLUMN) / 7.0)
         for entry, speed, offset, yaw in product(entries, _speeds(speed_mm_per_s), offsets, yaws):
-            rows.append((column_mm(table, column) - entry, speed, speed, chance))
+            posture = -0.5 * ((OFFSETS_MM[offset] / OFFSET_SPREAD_MM) ** 2 + (YAWS_DEG[yaw] / YAW_SPREAD_DEG) ** 2)
+            rows.append((column_mm(table, column) - entry, speed, speed, chance + posture))
             chosen.append((FORTH, offset, yaw, 1, column + 1, pattern))
     return Hypotheses(np.array(rows), np.array(chosen, dtype=np.int64), np.zeros((len(rows), channels)))
 

@@ -24,7 +24,7 @@ OFFSETS_MM = np.round(np.arange(-1.4, 1.41, 0.2), 3)
 YAWS_DEG = np.arange(-20.0, 20.1, 5.0)
 """Turns of the array against the line."""
 ROWS = DOTS // 2
-HIGH = 0.95
+HIGH = 0.98
 """Quantile of charges that stands for a large one."""
 
 
@@ -35,7 +35,7 @@ class LineTable:
     charge (yaw, place, offset, 64, n) in pC : of the channels in use, numbered by channels (n,). Bits 0 to 2 of a
     pattern are the column behind, 3 to 5 the next one. within (place,) : whether the column behind is the second one
     of its cell. is_mirrored : the array moves from right to left, and a cell's right column comes first. largest_pC :
-    largest charge of a channel by one dot. high_pC (n,) : what one of twenty places and patterns exceeds.
+    largest charge of a channel by one dot. high_pC (n,) : what one of fifty places and patterns exceeds.
     slope_pC_per_mm : root mean square of the change of charge along the line; spread_pC : of the charge about its mean.
     """
 
@@ -110,7 +110,7 @@ def _with_sizes(
 
 
 def _high_charge(charge: Floats) -> Floats:
-    """What one of twenty charges (m, n) of each channel exceeds, on the side of their larger ones."""
+    """What one of fifty charges (m, n) of each channel exceeds, on the side of their larger ones."""
     low, high = np.quantile(charge, [1.0 - HIGH, HIGH], axis=0)
     return np.asarray(np.where(high + low >= 0.0, high, low))
 
