@@ -43,8 +43,8 @@ PATIENCE_S = 0.6
 """Time that a new start has before the next one."""
 GAIN_S, GAIN_PRIOR_S, WIDEST_GAIN = 8.0, 2.0, 2.0
 """Memory of the gains that are followed, weight of the first ones, and how far they may go from these."""
-EARLY_STEPS = 10
-"""Steps at the beginning in which more hypotheses are kept."""
+EARLY_SHARE, EARLY_STEPS = 0.6, 40
+"""More hypotheses are kept until a charge reaches this share of the largest one of a dot, for so many steps at most."""
 NEAR_MM = 3.0
 """Way from the middle of a cell within which the fit counts for it."""
 
@@ -89,6 +89,7 @@ class LineFilter:
         """Make room for children and products."""
         channels = self.table.charge.shape[-1]
         self._settings, self._early, self._steps = settings(self.step_s), early_settings(self.step_s), 0
+        self._is_early = True
         self._room = (
             np.empty((MOST_CHILDREN, 4)), np.empty((MOST_CHILDREN, 6), dtype=np.int64),
             np.empty(MOST_CHILDREN, dtype=np.int64),
@@ -143,9 +144,12 @@ class LineFilter:
         state, choice, drift, evidence = advance(
             known.state, known.choice, known.drift, charge_pC, temper,
             bool(largest > TOUCH_SHARE * self.table.largest_pC), self.sensor,
-            self._early if self._steps < EARLY_STEPS else self._settings, self._room,
+            self._early if self._is_early else self._settings, self._room,
         )  # fmt: skip
         self._steps += 1
+        self._is_early = (
+            self._is_early and self._steps < EARLY_STEPS and largest < EARLY_SHARE * self.table.largest_pC
+        )
         self.hypotheses = Hypotheses(state, choice, drift)
         self.evidence += evidence
         self._best = int(np.argmax(state[:, LOG_WEIGHT]))

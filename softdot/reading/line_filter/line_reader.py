@@ -176,7 +176,7 @@ class LineReader:
         self._blocks = ChargeBlocks(
             capacitance / channels.gain, resistance * channels.gain, channels.resting_V, samples, 1.0 / self._rate
         )
-        self._skip = 0 if channels.is_inside else max(0, channels.onset - round(0.02 * self._rate)) // samples
+        self._skip = 0 if channels.is_inside else max(0, channels.onset - round(0.004 * self._rate)) // samples
         before = self._copy_of_blocks().add(quiet[: len(quiet) // samples * samples])
         if channels.is_inside:
             self._zero = np.quantile(before, 0.1, axis=0)
