@@ -39,8 +39,12 @@ def _hum_V(time_s: Floats, conditions: ReadingConditions, random: np.random.Gene
     if conditions.hum_mV == 0.0:
         return np.zeros(len(time_s))
     step = float(time_s[1] - time_s[0])
-    drift = conditions.hum_drift_Hz * slow_process(len(time_s), step / HUM_DRIFT_S, random) if conditions.hum_drift_Hz else 0.0
-    phase = start + 2.0 * np.pi * (conditions.hum_Hz * time_s + step * np.cumsum(drift * np.ones(len(time_s))))
+    drift = (
+        conditions.hum_drift_Hz * slow_process(len(time_s), step / HUM_DRIFT_S, random)
+        if conditions.hum_drift_Hz
+        else 0.0
+    )
+    phase = start + 2.0 * np.pi * (conditions.hum_Hz * time_s + step * np.cumsum(drift))
     return 1e-3 * conditions.hum_mV * np.asarray(np.sin(phase) + conditions.hum_third * np.sin(3.0 * phase))
 
 
@@ -51,4 +55,8 @@ def _drift_V(
     if conditions.drift_mV == 0.0:
         return 0.0
     step = float(time_s[1] - time_s[0]) / DRIFT_S
-    return 1e-3 * conditions.drift_mV * np.stack([slow_process(len(time_s), step, random) for _ in range(channels)], axis=1)
+    return (
+        1e-3
+        * conditions.drift_mV
+        * np.stack([slow_process(len(time_s), step, random) for _ in range(channels)], axis=1)
+    )

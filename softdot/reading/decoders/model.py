@@ -1,6 +1,5 @@
-"""Decoder "model": the cells that make the voltages most likely, by the kernel and without training.
-
-Of a slide they are those of the filter (softdot.reading.line_filter); of presses the most likely ones of all 64.
+"""Decoder "model": the cells that make the voltages most likely, by the kernel and without training. Of a slide they
+are those of the filter (softdot.reading.line_filter); of presses the most likely ones of all 64.
 """
 
 from dataclasses import dataclass

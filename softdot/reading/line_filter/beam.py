@@ -45,7 +45,7 @@ class Sensor(NamedTuple):
     drift_pC: Floats
 
 
-class Settings(NamedTuple):
+class HandMotion(NamedTuple):
     """Log-probabilities of a step, and constants of the weights.
 
     faster, jump : steps of the log-speed; relax, settle : shares of the way of log-speed and mean to each other in a
@@ -141,7 +141,7 @@ def advance(state, choice, drift, measured, temper, may_touch, sensor, settings,
 
 @nb.njit(cache=True)
 def weighed(state, choice, drift, measured, sensor, settings):  # type: ignore[no-untyped-def]
-    """Hypotheses after they were weighed by the charges measured (n,), without a motion."""
+    """Beam after they were weighed by the charges measured (n,), without a motion."""
     made = state.copy()
     for h in range(state.shape[0]):
         row, first = _window(made[h, PLACE], sensor)

@@ -20,6 +20,8 @@ DEAD_SHARE, SILENT_SHARE = 0.15, 0.4
 """Shares of the gain of others below which a channel counts as dead, or a
 whole row as one without dots.
 """
+CLEAR_POLARITY = 3.0
+"""Ratio of the extreme charges of both signs from which a channel shows a polarity of its own."""
 DEAD_LOUDNESS = 2.0
 """Root mean square of voltages over that of their noise below which a channel has no signal."""
 WIDEST_GAIN = 1.5
@@ -111,9 +113,10 @@ def _gains(charge_pC: Floats, loud: Floats, is_inside: bool, table: LineTable, p
     alive = size >= DEAD_SHARE * np.maximum(row, SILENT_SHARE * common * (row >= SILENT_SHARE * common))
     silent = row < SILENT_SHARE * common
     own = common * np.clip(size / max(common, 1e-300), 1.0 / WIDEST_GAIN, WIDEST_GAIN) ** BELIEVED
-    gain = np.where(silent, common, own)
-    together = np.sign(np.sum(sign * size * ~silent))
-    return np.where(silent, together, sign) * np.maximum(gain, 1e-12), alive | silent
+    together = 1.0 if np.sum(sign * size * ~silent) >= 0.0 else -1.0
+    clear = np.maximum(np.abs(high), np.abs(low)) > CLEAR_POLARITY * np.minimum(np.abs(high), np.abs(low))
+    sign = np.where(clear & ~silent & alive, sign, together)
+    return sign * np.maximum(np.where(silent, common, own), 1e-12), alive | silent
 
 
 def _speed(charge_pC: Floats, step_s: float, alive: Bools, table: LineTable) -> float:

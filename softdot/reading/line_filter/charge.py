@@ -1,6 +1,5 @@
-"""The charge behind voltages, as means over blocks of samples: Q = C V + integral of (V - V0) / R.
-
-It does not depend on the speed, and white noise of the voltages makes it a slow random walk.
+"""The charge behind voltages, as means over blocks of samples: Q = C V + integral of (V - V0) / R. It does not depend
+on the speed, and white noise of the voltages makes it a slow random walk.
 """
 
 from dataclasses import dataclass, field

@@ -16,7 +16,7 @@ from softdot.reading.line_filter.beam import (
     SEEN,
     UNSEEN,
     YAW,
-    Settings,
+    HandMotion,
 )
 from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, LineTable, column_mm
 
@@ -45,7 +45,7 @@ FIRST_COLUMN = 0.85
 
 
 @dataclass
-class Hypotheses:
+class Beam:
     """Rows of state (h, 4), choice (h, 6) and drift (h, n), as in softdot.reading.line_filter.beam."""
 
     state: Floats
@@ -53,13 +53,13 @@ class Hypotheses:
     drift: Floats
 
 
-def settings(step_s: float) -> Settings:
+def settings(step_s: float) -> HandMotion:
     """The motion of a hand in steps of a time."""
 
     def often(per_s: float) -> float:
         return log(min(per_s * step_s, 0.5))
 
-    return Settings(
+    return HandMotion(
         step_s=step_s,
         faster=SPEED_SPREAD_PER_SQRT_S * sqrt(3.0 * step_s),
         jump=JUMP,
@@ -82,13 +82,13 @@ def settings(step_s: float) -> Settings:
     )
 
 
-def early_settings(step_s: float) -> Settings:
+def early_settings(step_s: float) -> HandMotion:
     """The motion over the first column: what is rare is left out, and more hypotheses are kept."""
     rare = dict.fromkeys(("log_jump", "log_stop", "log_back", "log_aside", "log_turn", "log_lift"), -1e9)
     return settings(step_s)._replace(most_kept=EARLY_KEPT, **rare)  # type: ignore[arg-type]
 
 
-def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) -> Hypotheses:
+def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) -> Beam:
     """The array meets the first column of a line: of its cell the first or the second, any pattern but a blank."""
     entries = np.arange(NEAREST_MM, 0.5 * FARTHEST_SHARE * table.cell_pitch_mm, ENTRY_STEP_MM)
     offsets, yaws = range(0, len(OFFSETS_MM), 2), range(2, len(YAWS_DEG) - 2, 2)
@@ -99,14 +99,14 @@ def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) 
             posture = -0.5 * ((OFFSETS_MM[offset] / OFFSET_SPREAD_MM) ** 2 + (YAWS_DEG[yaw] / YAW_SPREAD_DEG) ** 2)
             rows.append((column_mm(table, column) - entry, speed, speed, chance + posture))
             chosen.append((FORTH, offset, yaw, 1, column + 1, pattern))
-    return Hypotheses(np.array(rows), np.array(chosen, dtype=np.int64), np.zeros((len(rows), channels)))
+    return Beam(np.array(rows), np.array(chosen, dtype=np.int64), np.zeros((len(rows), channels)))
 
 
 def _speeds(speed_mm_per_s: float) -> Floats:
     return np.log(speed_mm_per_s) + log(SPEED_FACTOR) * np.linspace(-1.0, 1.0, SPEEDS)
 
 
-def anywhere(table: LineTable, best: Hypotheses, speeds: Floats) -> Hypotheses:
+def anywhere(table: LineTable, best: Beam, speeds: Floats) -> Beam:
     """Around the place of one hypothesis, within half a cell to each side: any two columns, near postures and speeds.
 
     speeds (s,) : logarithms.
@@ -123,7 +123,7 @@ def anywhere(table: LineTable, best: Hypotheses, speeds: Floats) -> Hypotheses:
             own = columns & ~0xFF | pattern >> 3 | (pattern & 7) << 4
             chosen.append((FORTH, aside, yaw, 1, seen, own))
     state, choice = np.array(rows), np.array(chosen, dtype=np.int64)
-    return Hypotheses(state, choice, np.repeat(best.drift[:1], len(rows), axis=0))
+    return Beam(state, choice, np.repeat(best.drift[:1], len(rows), axis=0))
 
 
 def _chance_of(pattern: int) -> float:

@@ -26,7 +26,7 @@ from softdot.reading.line_filter.beam import (
     predicted_charges,
     weighed,
 )
-from softdot.reading.line_filter.hypotheses import Hypotheses, anywhere, early_settings, settings
+from softdot.reading.line_filter.hypotheses import Beam, anywhere, early_settings, settings
 from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, LineTable
 
 LAG_COLUMNS = 4
@@ -69,7 +69,7 @@ class LineFilter:
     table: LineTable
     sensor: Sensor
     step_s: float
-    hypotheses: Hypotheses
+    hypotheses: Beam
     evidence: float = 0.0
     fit: float = 1.0
     losses: int = 0
@@ -100,10 +100,10 @@ class LineFilter:
         self._safe_drift, self._safe_log_speed = self.hypotheses.drift[0], float(self.hypotheses.state[:, 1].mean())
 
     @property
-    def best(self) -> Hypotheses:
+    def best(self) -> Beam:
         """The most likely hypothesis alone."""
         one, all_ = self._best, self.hypotheses
-        return Hypotheses(all_.state[one : one + 1], all_.choice[one : one + 1], all_.drift[one : one + 1])
+        return Beam(all_.state[one : one + 1], all_.choice[one : one + 1], all_.drift[one : one + 1])
 
     @property
     def place_mm(self) -> float:
@@ -136,7 +136,7 @@ class LineFilter:
         if self._steps == 0:
             first = self.hypotheses
             self._best = 0
-            self.hypotheses = Hypotheses(
+            self.hypotheses = Beam(
                 *weighed(first.state, first.choice, first.drift, charge_pC, self.sensor, self._early)
             )
         known = self.hypotheses
@@ -147,10 +147,8 @@ class LineFilter:
             self._early if self._is_early else self._settings, self._room,
         )  # fmt: skip
         self._steps += 1
-        self._is_early = (
-            self._is_early and self._steps < EARLY_STEPS and largest < EARLY_SHARE * self.table.largest_pC
-        )
-        self.hypotheses = Hypotheses(state, choice, drift)
+        self._is_early = self._is_early and self._steps < EARLY_STEPS and largest < EARLY_SHARE * self.table.largest_pC
+        self.hypotheses = Beam(state, choice, drift)
         self.evidence += evidence
         self._best = int(np.argmax(state[:, LOG_WEIGHT]))
         self.touching = bool(choice[self._best, TOUCH])
@@ -212,7 +210,7 @@ class LineFilter:
         state, choice, drift = weighed(fresh.state, fresh.choice, fresh.drift, charge_pC, self.sensor, self._settings)
         known = self.hypotheses
         state[:, LOG_WEIGHT] += known.state[self._best, LOG_WEIGHT] - state[:, LOG_WEIGHT].max()
-        self.hypotheses = Hypotheses(
+        self.hypotheses = Beam(
             np.concatenate([known.state, state]),
             np.concatenate([known.choice, choice]),
             np.concatenate([known.drift, drift]),

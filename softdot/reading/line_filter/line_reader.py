@@ -11,16 +11,16 @@ from softdot.arrays.kernel import ArrayKernel
 from softdot.reading.line_filter.beam import Sensor
 from softdot.reading.line_filter.channels import Channels, first_signal, measured_channels
 from softdot.reading.line_filter.charge import ChargeBlocks
-from softdot.reading.line_filter.hypotheses import Hypotheses, anywhere, at_the_first_column
+from softdot.reading.line_filter.hypotheses import Beam, anywhere, at_the_first_column
 from softdot.reading.line_filter.line_filter import FLOOR_SHARE, LOST_FIT, LineFilter, PassedCell
 from softdot.reading.line_filter.mains import BANDWIDTH_HZ, FREQUENCY, hum_frequency_Hz, hum_state, without_hum
 from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, LineTable, line_table
 from solve.model import Readout
 from solve.readout.amplifier import input_of
 
-CHECK_S, KEPT_QUIET_S = 0.5, 1.5
+CHECK_S, KEPT_QUIET_S = 0.25, 1.5
 """Time between looks for a line that begins, and how much of the silence before it is kept."""
-LEAST_S, LEAST_WAY_MM, MOST_S = 1.5, 25.0, 10.0
+LEAST_S, LEAST_WAY_MM, MOST_S = 1.0, 25.0, 10.0
 """What is heard of a line before its channels are measured: a time and a way at least, or a longer time."""
 BLOCK_MM, LONGEST_BLOCK_S = 0.25, 0.05
 """Way and time that charges are averaged over, at most."""
@@ -204,7 +204,7 @@ class LineReader:
             drift,
         )  # fmt: skip
         if channels.is_inside:
-            middle = Hypotheses(
+            middle = Beam(
                 np.array([[0.5 * table.cell_pitch_mm, 0.0, 0.0, 0.0]]),
                 np.array([[1, len(OFFSETS_MM) // 2, len(YAWS_DEG) // 2, 1, 0, 0]]), np.zeros((1, count)),
             )  # fmt: skip
