@@ -14,8 +14,10 @@ from softdot.reading.voltages import Reader, Voltages
 
 PART_SAMPLES = 4096
 """Voltages that are pushed at once, which bounds the memory."""
-LEAST_CERTAIN_SHARE, LEAST_CELLS = 0.5, 3
-"""Share of certain cells, of so many at least, below which what was heard is no line of Braille under this array."""
+LEAST_CERTAIN_SHARE, CELLS_A_LOSS = 0.5, 8
+"""Share of certain cells, and number of cells for each loss of the track, below which what was heard is no line of
+Braille under this array.
+"""
 HUM_S = 10.0
 """Time from which the hum of a whole recording is first taken."""
 
@@ -63,7 +65,7 @@ class Track:
     def is_braille(self) -> bool:
         """Whether what was heard fits a line of Braille under the array of the kernel."""
         certain = float(np.mean(self.probability >= CERTAIN))
-        return len(self.cells) < LEAST_CELLS or certain >= LEAST_CERTAIN_SHARE
+        return certain >= LEAST_CERTAIN_SHARE and self.report.lost * CELLS_A_LOSS <= len(self.cells)
 
     @property
     def is_whole(self) -> bool:

@@ -85,7 +85,7 @@ def settings(step_s: float) -> HandMotion:
 def early_settings(step_s: float) -> HandMotion:
     """The motion over the first column: what is rare is left out, and more hypotheses are kept."""
     rare = dict.fromkeys(("log_jump", "log_stop", "log_back", "log_aside", "log_turn", "log_lift"), -1e9)
-    return settings(step_s)._replace(most_kept=EARLY_KEPT, **rare)  # type: ignore[arg-type]
+    return settings(step_s)._replace(most_kept=EARLY_KEPT, **rare)
 
 
 def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) -> Beam:
@@ -103,7 +103,7 @@ def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) 
 
 
 def _speeds(speed_mm_per_s: float) -> Floats:
-    return np.log(speed_mm_per_s) + log(SPEED_FACTOR) * np.linspace(-1.0, 1.0, SPEEDS)
+    return np.asarray(np.log(speed_mm_per_s) + log(SPEED_FACTOR) * np.linspace(-1.0, 1.0, SPEEDS))
 
 
 def anywhere(table: LineTable, best: Beam, speeds: Floats) -> Beam:

@@ -181,7 +181,7 @@ class LineFilter:
             prior = (1.0 - fade) * GAIN_PRIOR_S / self.step_s * (0.3 * self.table.largest_pC) ** 2
             self._products += prior
             gain[:] = np.clip(self._products[0] / self._products[1], 1.0 / WIDEST_GAIN, WIDEST_GAIN)
-        return residual
+        return np.asarray(residual)
 
     def _note_time(self, time_s: float) -> None:
         """Note the time at which the best hypothesis first passes a cell, and the fit around it."""

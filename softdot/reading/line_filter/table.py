@@ -7,6 +7,7 @@ are exact for every turn of the array; what dots add to the sum of single ones i
 from dataclasses import dataclass
 from functools import lru_cache
 from math import cos, radians, sin
+from typing import Any
 
 import numpy as np
 
@@ -96,7 +97,7 @@ def _kept_table(key: _Key, is_mirrored: bool) -> LineTable:
 
 
 def _with_sizes(
-    charge: Floats, channels: Ints, within: Bools, spacing: float, pitch: float, is_mirrored: bool
+    charge: Any, channels: Ints, within: Bools, spacing: float, pitch: float, is_mirrored: bool
 ) -> LineTable:
     """The table with the sizes of its charges, in the middle of the line and not turned."""
     middle = charge[len(YAWS_DEG) // 2, :, len(OFFSETS_MM) // 2].astype(np.float64)
