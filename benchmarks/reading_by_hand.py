@@ -21,7 +21,8 @@ from diagnose.statistics.proportions import wilson_interval
 from softdot.arrays.kernel import ArrayKernel, load_kernel
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.conditions import ReadingConditions, standard_of
-from softdot.reading.decoders.track import NoDotError, track_slide
+from softdot.reading.decoders.hand import track_hand
+from softdot.reading.decoders.onset import NoDotError
 from softdot.reading.line import manufactured_line
 from softdot.reading.motion import array_path
 from softdot.reading.score import align, rate
@@ -122,7 +123,7 @@ def read_one(reader: Reader, heard: Voltages, cells: np.ndarray) -> dict[str, fl
     found: dict[str, float] = {"of": len(text), "right": 0, "certain": 0, "certain_right": 0, "cells": 0, "lost": 0}
     found |= {"squares": 0.0, "seconds": float(np.ptp(heard.time_s)), "failed": 0.0}
     try:
-        track = track_slide(reader, heard)
+        track = track_hand(reader, heard)
     except NoDotError:
         return {**found, "cpu_s": time.process_time() - begun, "failed": 1.0}
     found["cpu_s"] = time.process_time() - begun

@@ -72,9 +72,8 @@ def add_read(commands: Any) -> None:
     read.add_argument("--seed", type=int, metavar="N", help="of scatter, tremor and noise, 0 by default")
     read.add_argument(
         "--decoders",
-        default="model,threshold,learned",
         metavar="NAME,NAME",
-        help="the first one's text is what is read",
+        help="the first one's text is what is read; default: model,threshold,learned, with --preset hand hand",
     )
     read.add_argument(
         "--recording",

@@ -116,7 +116,7 @@ def command(chosen: Namespace) -> int:
     with only_the_summary_on_stdout(), progress_of(chosen) as progress:
         summary = run_read(
             chosen.text, Path(chosen.kernel), Path(chosen.output), conditions_of(chosen), config, chosen.table,
-            chosen.decoders, recording, progress,
+            _decoders(chosen), recording, progress,
         )  # fmt: skip
     show(summary, chosen, short_text)
     return GOOD if summary["is_certain"] else NOT_CONVERGED
@@ -179,7 +179,7 @@ def _search_designs(chosen: Namespace) -> int:
             raise InputError(f"--design: makes its own kernels and voltages; leave {_argument_name(name)} out")
     if chosen.study:
         raise InputError("--design: is another search than --study; give one of them")
-    decoder = named_decoders(chosen.decoders)[0]
+    decoder = named_decoders(_decoders(chosen))[0]
     request = load_request(Path(chosen.design), chosen.set)
     asked = AskedReading(chosen.text or DEFAULT_TEXT, chosen.table, decoder, conditions_of(chosen))
     summary = _run_resumable(
@@ -215,6 +215,12 @@ def _stated_conditions(chosen: Namespace) -> dict[str, Any]:
 
     given = {one.name: getattr(chosen, one.name, None) for one in fields(ReadingConditions)}
     return {name: value for name, value in given.items() if value is not None}
+
+
+def _decoders(chosen: Namespace) -> str:
+    """The decoders that the command line names, else those of its preset."""
+    named: str | None = chosen.decoders
+    return named or ("hand" if chosen.preset == "hand" else DEFAULT_DECODERS)
 
 
 def _preset(chosen: Namespace) -> dict[str, Any]:

@@ -62,6 +62,9 @@ def _moved_mm(way_mm: float, step_s: float, conditions: ReadingConditions, rando
     """Way (t,) that was travelled, forth and back, until all of it is done."""
     from scipy.signal import lfilter
 
+    if conditions.speed_cv == 0.0:
+        count = int(np.ceil(way_mm / conditions.speed_mm_per_s / step_s)) + 1
+        return np.asarray(conditions.speed_mm_per_s * step_s * np.arange(count))
     spread, fade = conditions.speed_cv, float(np.exp(-step_s / conditions.speed_time_s))
     moved: Floats = np.zeros(1)
     level = random.standard_normal()

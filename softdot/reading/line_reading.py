@@ -12,10 +12,10 @@ from softdot.arrays.kernel import ArrayKernel
 from softdot.progress import Progress
 from softdot.reading.cells import braille, text_of
 from softdot.reading.conditions import ReadingConditions, refuse_missing_channels, standard_of, standard_warnings
-from softdot.reading.decoders import DECODERS, decoder_input
+from softdot.reading.decoders import Seen, decoded
+from softdot.reading.decoders.fitted import Track
+from softdot.reading.decoders.hand import HandTrack
 from softdot.reading.decoders.model import DecodedCells
-from softdot.reading.decoders.pressing import PressedCells
-from softdot.reading.decoders.track import Track
 from softdot.reading.kernels import electronics_of
 from softdot.reading.line import DotLine, cell_pitch_mm, manufactured_line
 from softdot.reading.motion import ArrayPath, array_path, press_times
@@ -43,13 +43,13 @@ class LineReading:
     voltages: Voltages
     line: DotLine | None
     path: ArrayPath | None
-    seen: Track | PressedCells
+    seen: Seen
     decoded: dict[str, DecodedCells]
 
     @property
     def is_certain(self) -> bool:
         """Whether what was heard is Braille, and no cell is uncertain because the track was lost."""
-        return not isinstance(self.seen, Track) or self.seen.is_whole
+        return not isinstance(self.seen, HandTrack) or self.seen.is_whole
 
     @property
     def first(self) -> DecodedCells:
@@ -89,11 +89,7 @@ def read_line(
     else:
         heard = recording
     progress.stage("decode")
-    seen = decoder_input(reader, heard)
-    found = {}
-    for number, name in enumerate(names, 1):
-        found[name] = DECODERS[name](reader, seen)
-        progress.step(number, len(names), name)
+    seen, found = decoded(reader, heard, names, lambda done: progress.step(done, len(names), names[done - 1]))
     return LineReading(reader, known, cells, heard, line, path, seen, found)
 
 
@@ -132,7 +128,7 @@ def reading_content(reading: LineReading, text: str | None, table: str | None) -
         "duration_s": seconds,
         "conditions": {**reading.conditions.as_dict(), **_readout_conditions(reading.reader.readout)},
         "share_of_time_at_force": None if reading.path is None else reading.path.held,
-        "track": line_content(reading.seen) if isinstance(reading.seen, Track) else None,
+        "track": _track_content(reading.seen),
         "cells": cell_content(first),
         "kernel": {key: value for key, value in reading.reader.kernel.about.items() if key != "config"},
         "warnings": _warnings(reading),
@@ -163,9 +159,16 @@ def _duration_s(reading: LineReading) -> float:
     return float(abs(passed[-1] - passed[0]) * len(passed) / (len(passed) - 1))
 
 
+def _track_content(seen: Seen) -> dict[str, Any] | None:
+    """The motion as found from the voltages alone."""
+    if isinstance(seen, HandTrack):
+        return line_content(seen)
+    return vars(seen.posture) if isinstance(seen, Track) else None
+
+
 def _warnings(reading: LineReading) -> list[str]:
     told = standard_warnings(reading.reader.kernel, reading.reader.standard)
-    if isinstance(reading.seen, Track):
+    if isinstance(reading.seen, HandTrack):
         told += track_warnings(reading.seen, reading.reader.kernel.about["labels"])
     held = None if reading.path is None else reading.path.held
     if held is not None and held < 1.0:

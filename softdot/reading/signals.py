@@ -6,7 +6,8 @@ import numpy as np
 
 from foundation.arrays import Floats
 from softdot.reading.cells import braille
-from softdot.reading.decoders.track import Track
+from softdot.reading.decoders.fitted import Track
+from softdot.reading.decoders.hand import HandTrack
 from softdot.reading.line import cell_pitch_mm, nominal_line
 from softdot.reading.line_reading import LineReading
 from softdot.reading.score import align
@@ -42,8 +43,12 @@ def _place_mm(reading: LineReading, pitch: float) -> Floats:
     """Place (t,) of the array's middle from the first cell that was read: as simulated, else as tracked."""
     if reading.path is not None:
         return np.interp(reading.voltages.time_s, reading.path.time_s, reading.path.x_mm)
-    if isinstance(reading.seen, Track):
+    if isinstance(reading.seen, HandTrack):
         return reading.seen.place_mm(reading.voltages.time_s)
+    if isinstance(reading.seen, Track):
+        place = reading.seen.place_mm(reading.voltages.time_s)
+        begin = reading.first.passed_s[0] if len(reading.first.passed_s) else reading.seen.passed_s[0]
+        return np.asarray(place - np.interp(begin, reading.voltages.time_s, place))
     assert reading.reader.presses is not None
     return np.asarray(pitch * np.floor(reading.voltages.time_s / reading.reader.presses.period_s))
 

@@ -16,7 +16,7 @@ from softdot.progress import Untold
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.decoders import named_decoders
-from softdot.reading.decoders.track import NoDotError
+from softdot.reading.decoders.onset import NoDotError
 from softdot.reading.kernels import open_kernel
 from softdot.reading.line_reading import read_line, reading_content
 from solve.model import Readout

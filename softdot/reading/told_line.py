@@ -4,12 +4,12 @@ from typing import Any
 
 import numpy as np
 
+from softdot.reading.decoders.hand import HandTrack
 from softdot.reading.decoders.model import DecodedCells
-from softdot.reading.decoders.track import Track
 from softdot.reading.line_filter.line_reader import CERTAIN
 
 
-def line_content(track: Track) -> dict[str, Any]:
+def line_content(track: HandTrack) -> dict[str, Any]:
     """What reading.json says of the line that a track was found on."""
     report = track.report
     return {
@@ -39,7 +39,7 @@ def cell_content(found: DecodedCells) -> list[dict[str, Any]]:
     ]
 
 
-def track_warnings(track: Track, labels: list[str]) -> list[str]:
+def track_warnings(track: HandTrack, labels: list[str]) -> list[str]:
     """Sentences about all that a user should know of the line and its channels."""
     report, told = track.report, []
     if report.dead:

@@ -42,7 +42,8 @@ class Reader:
     """Everything that a decoder may know: the kernel, the nominal standard, the read-out, and the times of presses.
 
     physics : effects behind the film besides the read-out. presses : times at which the array is set down, as its
-    machine tells them; None where it slides.
+    machine tells them; None where it slides. passing : charges of passed dots by offset and yaw, which decoders keep
+    here.
     """
 
     kernel: ArrayKernel
@@ -50,6 +51,7 @@ class Reader:
     readout: Readout
     presses: PressTimes | None = None
     physics: Physics = field(default_factory=Physics)
+    passing: dict[tuple[float, float], tuple[Floats, Floats]] = field(default_factory=dict, compare=False, repr=False)
 
 
 def charges_pC(kernel: ArrayKernel, line: DotLine, path: ArrayPath, told: Step | None = None) -> Floats:
@@ -60,6 +62,16 @@ def charges_pC(kernel: ArrayKernel, line: DotLine, path: ArrayPath, told: Step |
         charge[span] = kernel.of_many(*dots_near(kernel, line, path, span))[0]
         if told is not None:
             told(min(begin + CHUNK_TIMES, len(charge)), len(charge))
+    return charge
+
+
+def charges_of_lone_dots_pC(kernel: ArrayKernel, line: DotLine, path: ArrayPath) -> Floats:
+    """Charges (t, n) if no dot felt another one: the sum of those that each would give alone."""
+    charge = np.empty((len(path.time_s), kernel.charge_pC.shape[-1]))
+    for begin in range(0, len(charge), CHUNK_TIMES):
+        span = slice(begin, begin + CHUNK_TIMES)
+        x, y, depth = dots_near(kernel, line, path, span)
+        charge[span] = kernel.of_one(x, y, depth)[0].sum(axis=1)
     return charge
 
 
@@ -93,7 +105,7 @@ def record_voltages(
     random: np.random.Generator,
     told: Step | None = None,
 ) -> Voltages:
-    """The sampled voltages of a path over a line, with white noise and hum."""
+    """The sampled voltages of a path over a line, with what acts on them behind the film."""
     charge = charges_pC(reader.kernel, line, path, told)
     count = int((path.time_s[-1] - path.time_s[0]) * conditions.sampling_Hz)
     time = path.time_s[0] + np.arange(count) / conditions.sampling_Hz
@@ -112,6 +124,14 @@ def without_mains(heard: Voltages) -> Voltages:
     waves = np.stack([np.sin(phase), np.cos(phase)], axis=1)
     found = np.linalg.lstsq(waves, heard.voltage_V, rcond=None)[0]
     return Voltages(heard.time_s, heard.voltage_V - waves @ found)
+
+
+def averaged_voltages(reader: Reader, time_s: Floats, charge_pC: Floats, like: Voltages, many: int) -> Voltages:
+    """Voltages of charges (t, n) at the samples of others, each the mean of `many` finer samples."""
+    fine = like.step_s / many
+    at = like.time_s[0] - 0.5 * (many - 1) * fine + fine * np.arange(many * len(like.time_s))
+    voltage = readout_voltages(reader, time_s, charge_pC, at)
+    return Voltages(like.time_s, voltage.reshape(len(like.time_s), many, -1).mean(axis=1))
 
 
 def restored_charge_pC(reader: Reader, heard: Voltages) -> Floats:

@@ -1,12 +1,14 @@
-"""The decoders by name, and their common input from the voltages."""
+"""The decoders by name, and what they begin with."""
 
 from collections.abc import Callable
 
 from foundation.errors import InputError
-from softdot.reading.decoders import learned, model, threshold
+from softdot.reading.decoders import hand, learned, model, threshold
+from softdot.reading.decoders.fitted import Track
+from softdot.reading.decoders.hand import HandTrack, track_hand
 from softdot.reading.decoders.model import DecodedCells
 from softdot.reading.decoders.pressing import PressedCells, pressed_cells
-from softdot.reading.decoders.track import Track, track_slide
+from softdot.reading.decoders.track import track_slide
 from softdot.reading.voltages import Reader, Voltages, without_mains
 
 Decoder = Callable[[Reader, Track | PressedCells], DecodedCells]
@@ -15,17 +17,48 @@ DECODERS: dict[str, Decoder] = {
     "threshold": threshold.decode,
     "learned": learned.decode,
 }
+HAND = "hand"
+"""The decoder that finds its own track (softdot.reading.decoders.hand)."""
+Seen = Track | PressedCells | HandTrack
 
 
 def named_decoders(names: str) -> list[str]:
     """The names of decoders in a text, separated by commas. InputError for an unknown one."""
     found = list(dict.fromkeys(name.strip() for name in names.split(",")))
     for name in found:
-        if name not in DECODERS:
-            raise InputError(f"--decoders = '{names}': '{name}' is none of {', '.join(DECODERS)}")
+        if name not in (*DECODERS, HAND):
+            raise InputError(f"--decoders = '{names}': '{name}' is none of {', '.join((*DECODERS, HAND))}")
     return found
 
 
 def decoder_input(reader: Reader, heard: Voltages) -> Track | PressedCells:
-    """The input of all decoders: the track of a slide, or the charges of presses. InputError without a signal."""
-    return track_slide(reader, heard) if reader.presses is None else pressed_cells(reader, without_mains(heard))
+    """The input of all decoders but HAND: the track of a slide, or the charges of presses. InputError without a
+    signal.
+    """
+    quiet = without_mains(heard)
+    return track_slide(reader, quiet) if reader.presses is None else pressed_cells(reader, quiet)
+
+
+def decoded(
+    reader: Reader, heard: Voltages, names: list[str], told: Callable[[int], None]
+) -> tuple[Seen, dict[str, DecodedCells]]:
+    """What the first decoder has seen, and the cells of each by its name. told : with the number of those done.
+
+    InputError without a signal, and for presses that HAND should read.
+    """
+    if HAND in names and reader.presses is not None:
+        raise InputError(f"--decoders: '{HAND}' reads slides; leave it out with --mode press")
+    common = None if names == [HAND] else decoder_input(reader, heard)
+    by_hand = track_hand(reader, heard) if HAND in names else None
+    found = {}
+    for number, name in enumerate(names, 1):
+        if name == HAND:
+            assert by_hand is not None
+            found[name] = hand.decode(by_hand)
+        else:
+            assert common is not None
+            found[name] = DECODERS[name](reader, common)
+        told(number)
+    seen = by_hand if names[0] == HAND else common
+    assert seen is not None
+    return seen, found

@@ -14,12 +14,12 @@ from sklearn.neural_network import MLPClassifier
 from foundation.arrays import Floats
 from softdot.reading.cells import KINDS_OF_CELL
 from softdot.reading.conditions import ReadingConditions
+from softdot.reading.decoders.fitted import Track
 from softdot.reading.decoders.model import DecodedCells, trim_blanks
 from softdot.reading.decoders.pressing import PressedCells, pressed_cells
-from softdot.reading.decoders.track import Track
 from softdot.reading.line import cell_pitch_mm, cells_from, dots_of_cells, manufactured_line
 from softdot.reading.motion import array_path, press_times
-from softdot.reading.voltages import Reader, record_voltages
+from softdot.reading.voltages import Reader, Voltages, record_voltages
 
 TRAINING_CELLS, SEED = 600, 1
 """Number of cells on which the network is trained, and the seed of their choice."""
@@ -40,9 +40,7 @@ def decode(reader: Reader, seen: Track | PressedCells) -> DecodedCells:
         features = _press_features(seen)
     else:
         middles = cell_pitch_mm(reader.standard) * np.arange(len(seen.passed_s), dtype=np.float64)
-        place, samples = seen.first_passing()
-        turned = -1.0 if seen.report.leftward else 1.0  # a charge that comes in one direction goes in the other
-        features = _slide_features(turned * seen.quiet.voltage_V[samples], place, middles)
+        features = _slide_features(seen.heard, seen.place_mm(seen.heard.time_s), middles)
     dots = np.asarray(network.predict(features), dtype=bool)
     return trim_blanks(cells_from(dots), seen.passed_s)
 
@@ -83,9 +81,7 @@ def _train_network(of: _ReaderKey, presses: bool) -> Any:
     else:
         place = np.interp(heard.time_s, path.time_s, path.x_mm)
         middles = cell_pitch_mm(reader.standard) * np.arange(TRAINING_CELLS, dtype=np.float64)
-        features = np.concatenate(
-            [_slide_features(heard.voltage_V, place, middles + error) for error in PLACE_ERRORS_MM]
-        )
+        features = np.concatenate([_slide_features(heard, place, middles + error) for error in PLACE_ERRORS_MM])
         shown = np.tile(dots_of_cells(cells), (len(PLACE_ERRORS_MM), 1))
     network = MLPClassifier(
         HIDDEN_LAYERS, alpha=WEIGHT_PENALTY, max_iter=MOST_EPOCHS, early_stopping=True, random_state=SEED
@@ -93,10 +89,10 @@ def _train_network(of: _ReaderKey, presses: bool) -> Any:
     return network.fit(features, shown.astype(int))
 
 
-def _slide_features(voltage_V: Floats, place_mm: Floats, middles_mm: Floats) -> Floats:
+def _slide_features(heard: Voltages, place_mm: Floats, middles_mm: Floats) -> Floats:
     """Voltages (c, m) at even places around each middle, over their root mean square in the whole line."""
     at = middles_mm[:, None] + np.arange(-HALF_WINDOW_MM, HALF_WINDOW_MM + 1e-9, WINDOW_STEP_MM)
-    there = np.stack([np.interp(at, place_mm, one) for one in voltage_V.T], axis=-1)
+    there = np.stack([np.interp(at, place_mm, one) for one in heard.voltage_V.T], axis=-1)
     return np.asarray(there.reshape(len(middles_mm), -1) / max(float(np.sqrt(np.mean(there**2))), 1e-300))
 
 

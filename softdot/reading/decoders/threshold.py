@@ -9,9 +9,9 @@ from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from foundation.arrays import Floats
 from softdot.reading.cells import DOTS
+from softdot.reading.decoders.fitted import Track
 from softdot.reading.decoders.model import DecodedCells, trim_blanks
 from softdot.reading.decoders.pressing import PressedCells
-from softdot.reading.decoders.track import Track
 from softdot.reading.line import cell_pitch_mm, cells_from, dot_places_mm
 from softdot.reading.voltages import Reader, restored_charge_pC
 
@@ -36,8 +36,7 @@ def _pressed_levels(reader: Reader, seen: PressedCells) -> Floats:
 
 def _slid_levels(reader: Reader, seen: Track) -> Floats:
     """Peaks (c, 6) of the charge as the dot passes under the electrodes of its row, their mean."""
-    place, samples = seen.first_passing()
-    charge = restored_charge_pC(reader, seen.quiet)[samples]
+    charge, place = restored_charge_pC(reader, seen.heard), seen.place_mm(seen.heard.time_s)
     grid = np.arange(place[0], place[-1], LEVEL_STEP_MM)
     pitch, dots = cell_pitch_mm(reader.standard), dot_places_mm(reader.standard)
     centres = reader.kernel.centres_mm

@@ -1,109 +1,83 @@
-"""The track of a slide over a line, as softdot.reading.line_filter finds it from the voltages alone."""
+"""The place of the array at each time, from the voltages alone: speed, offset across the line, yaw, cell after cell.
 
-from dataclasses import dataclass
-from functools import cached_property
+1. A first speed from the frequency below which half of the power lies, beside that of templates at several speeds
+   (softdot.reading.decoders.onset).
+2. Around it, speed, place, offset and yaw over the first cells (softdot.reading.decoders.first_cells).
+3. Along the line in blocks of cells: each block begins where the last ones lead to, and is moved to where its dots
+   explain most.
+"""
 
 import numpy as np
 
-from foundation.arrays import Floats, Ints
-from foundation.errors import InputError
-from softdot.reading.line import cell_pitch_mm
-from softdot.reading.line_filter.line_reader import CERTAIN, LineReader, LineReport
-from softdot.reading.line_filter.mains import BANDWIDTH_HZ, hum_frequency_Hz, hum_state, without_hum
+from foundation.arrays import Floats
+from softdot.reading.cells import DOTS
+from softdot.reading.decoders.first_cells import SHIFT_STEP_MM, fit_first_cells
+from softdot.reading.decoders.fitted import CellFit, Track, cell_fit, explained_squares
+from softdot.reading.decoders.onset import active_interval, first_speed
+from softdot.reading.decoders.templates import average_samples, templates
 from softdot.reading.voltages import Reader, Voltages
 
-PART_SAMPLES = 4096
-"""Voltages that are pushed at once, which bounds the memory."""
-LEAST_CERTAIN_SHARE, CELLS_A_LOSS = 0.5, 8
-"""Share of certain cells, and number of cells for each loss of the track, below which what was heard is no line of
-Braille under this array.
-"""
-HUM_S = 10.0
-"""Time from which the hum of a whole recording is first taken."""
-
-
-class NoDotError(InputError):
-    """Raised where nothing stands out of the noise."""
-
-
-@dataclass(frozen=True)
-class Track:
-    """The track of a slide over a line, and the cells that were read on the way.
-
-    cells, probability, passed_s (c,) : the most likely cells from left to right, -1 where
-    one passed without contact, their probabilities, and when the array's middle passed each. course_s, course_mm (t,) :
-    place of the array's middle from the first cell that was met, in the direction of its motion.
-    """
-
-    report: LineReport
-    heard: Voltages
-    pitch_mm: float
-    cells: Ints
-    probability: Floats
-    passed_s: Floats
-    course_s: Floats
-    course_mm: Floats
-
-    @cached_property
-    def quiet(self) -> Voltages:
-        """The voltages less the hum of the whole recording."""
-        rate = 1.0 / self.heard.step_s
-        begin = self.heard.voltage_V[: round(HUM_S * rate)]
-        hum = hum_state(begin, rate, hum_frequency_Hz(begin, rate))
-        rest = without_hum(self.heard.voltage_V, *hum, 2.0 * np.pi * BANDWIDTH_HZ / rate)
-        return Voltages(self.heard.time_s, rest)
-
-    @property
-    def speed_mm_per_s(self) -> float:
-        """Mean speed along the line, pauses and ways back included."""
-        seconds = float(np.ptp(self.passed_s)) if len(self.passed_s) > 1 else 0.0
-        if seconds > 0.0:
-            return self.pitch_mm * (len(self.passed_s) - 1) / seconds
-        return float(np.ptp(self.course_mm) / max(np.ptp(self.course_s), 1e-12))
-
-    @property
-    def is_braille(self) -> bool:
-        """Whether what was heard fits a line of Braille under the array of the kernel."""
-        certain = float(np.mean(self.probability >= CERTAIN))
-        return certain >= LEAST_CERTAIN_SHARE and self.report.lost * CELLS_A_LOSS <= len(self.cells)
-
-    @property
-    def is_whole(self) -> bool:
-        """Whether it is a line of Braille, and no cell is uncertain because the track was lost."""
-        return self.is_braille and (self.report.lost == 0 or bool((self.probability >= CERTAIN).all()))
-
-    def place_mm(self, time_s: Floats) -> Floats:
-        """Place (t,) of the array's middle from the leftmost cell; before and behind the line it stays."""
-        place = np.interp(time_s, self.course_s, self.course_mm)
-        return self.pitch_mm * (len(self.cells) - 1) - place if self.report.leftward else place
-
-    def first_passing(self) -> tuple[Floats, Ints]:
-        """Rising places (k,) from the leftmost cell, and the samples (k,) that first were there."""
-        along = np.interp(self.heard.time_s, self.course_s, self.course_mm)
-        farthest = np.maximum.accumulate(along)
-        new = np.flatnonzero(np.diff(farthest, prepend=-np.inf) > 0.0)
-        if self.report.leftward:
-            new = new[::-1]
-        return self.place_mm(self.heard.time_s[new]), new
+BLOCK_CELLS, MOST_SHIFT_MM = 8, 0.7
+"""Cells in a block, and how far it may be moved from where the last blocks lead to."""
+MOST_STRETCH = 0.01
+"""Largest relative change of the pitch within a block."""
+HOP_CELLS, SPEED_BLOCKS, LEAST_BLOCK_SHARE = 4, 6, 0.05
+"""Cells from block to block, blocks that give the speed, and the share of the largest score that a block must reach."""
 
 
 def track_slide(reader: Reader, heard: Voltages) -> Track:
     """The track of a sliding array from its voltages. NoDotError where nothing stands out of their noise."""
-    line = LineReader(reader.kernel, reader.standard, reader.readout, 1.0 / heard.step_s, float(heard.time_s[0]))
-    line.course = []
-    found = []
-    for begin in range(0, len(heard.time_s), PART_SAMPLES):
-        found += line.push(heard.voltage_V[begin : begin + PART_SAMPLES])
-    found += line.finish()
-    report = line.report
-    if report is None or not found:
-        raise NoDotError("voltages: nothing stands out of their noise; there is no dot to read")
-    course = np.array(line.course)
-    pitch = cell_pitch_mm(reader.standard)
-    first = found[0].number
-    order = found[::-1] if report.leftward else found
-    return Track(
-        report, heard, pitch, np.array([one.cell for one in order], dtype=np.int64),
-        np.array([one.probability for one in order]), np.array([one.time_s for one in order]),
-        course[:, 0], course[:, 1] - pitch * first,
-    )  # fmt: skip
+    onset, end = active_interval(heard)
+    speed = first_speed(reader, heard, onset, end)
+    coarse, many = average_samples(heard, speed)
+    posture, middle = fit_first_cells(reader, coarse, many, (onset, end), speed)
+    fit = cell_fit(reader, templates(reader, posture, heard.step_s, many), coarse)
+    return Track(fit, coarse, many, _passing_times(fit, middle, onset, end))
+
+
+def _passing_times(fit: CellFit, middle: float, onset: float, end: float) -> Floats:
+    """Time (c,) at which each cell with any signal, and those between, is passed; linear between middles of blocks."""
+    while middle - fit.pitch_s > onset - 0.5 * fit.pitch_s:
+        middle -= fit.pitch_s
+    pitch, speed = fit.pitch_s, fit.templates.posture.speed_mm_per_s
+    matrix = fit.matrix(BLOCK_CELLS)
+    shifts = np.arange(-MOST_SHIFT_MM, MOST_SHIFT_MM + 1e-9, SHIFT_STEP_MM) / speed
+    stretch = 1.0 + MOST_STRETCH * np.linspace(-1.0, 1.0, 5)
+    cells = np.arange(BLOCK_CELLS) - 0.5 * (BLOCK_CELLS - 1)
+    number, centre, most = 0.5 * (BLOCK_CELLS - 1), middle + 0.5 * (BLOCK_CELLS - 1) * pitch, 0.0
+    known: list[tuple[float, float]] = []
+    while centre < end + 0.5 * BLOCK_CELLS * pitch:
+        times = centre + shifts[None, :, None] + pitch * stretch[:, None, None] * cells
+        score = explained_squares(matrix, fit.products(times).reshape(-1, BLOCK_CELLS * DOTS))[0].reshape(
+            times.shape[:2]
+        )
+        most = max(most, float(score.max()))
+        if score.max() > LEAST_BLOCK_SHARE * most:
+            centre = centre + _peak(shifts, score.max(axis=0))
+            known.append((number, centre))
+            pitch = _pitch_s(known[-SPEED_BLOCKS:], pitch)
+        number, centre = number + HOP_CELLS, centre + HOP_CELLS * pitch
+    numbers, centres = np.array(known).T
+    first, last = _pitch_s(known[:SPEED_BLOCKS], fit.pitch_s), _pitch_s(known[-SPEED_BLOCKS:], fit.pitch_s)
+    cell = np.arange(numbers[-1] + BLOCK_CELLS + 1)
+    time = np.interp(cell, numbers, centres)
+    time += first * np.minimum(cell - numbers[0], 0.0) + last * np.maximum(cell - numbers[-1], 0.0)
+    return np.asarray(time[time < end + 0.5 * fit.pitch_s])
+
+
+def _pitch_s(known: list[tuple[float, float]], before: float) -> float:
+    """Time from cell to cell by a straight line through the middles of blocks; the earlier value for one block."""
+    if len(known) < 2:
+        return before
+    numbers, centres = np.array(known).T
+    return float(np.polyfit(numbers - numbers[0], centres - centres[0], 1)[0])
+
+
+def _peak(at: Floats, score: Floats) -> float:
+    """The place where a parabola through the largest value and its neighbours is largest."""
+    k = int(np.argmax(score))
+    if not 0 < k < len(at) - 1:
+        return float(at[k])
+    left, mid, right = score[k - 1], score[k], score[k + 1]
+    bend = left - 2.0 * mid + right
+    return float(at[k] + (0.5 * (left - right) / bend * (at[1] - at[0]) if bend < 0.0 else 0.0))

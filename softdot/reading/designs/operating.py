@@ -25,7 +25,7 @@ from softdot.config.schema import Config
 from softdot.progress import Untold
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.conditions import ReadingConditions
-from softdot.reading.decoders.track import NoDotError
+from softdot.reading.decoders.onset import NoDotError
 from softdot.reading.kernels import check_kernel, readout_of
 from softdot.reading.line_reading import LineReading, read_line
 from softdot.reading.motion import dots_near

@@ -5,6 +5,8 @@ import pytest
 
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.decoders import learned
+from softdot.reading.decoders.onset import NoDotError
+from softdot.reading.decoders.track import track_slide
 from softdot.reading.line import DotLine
 from softdot.reading.voltages import Voltages
 from solve.model import Readout
@@ -24,6 +26,14 @@ def test_every_cell_is_read_at_any_speed_and_offset(kernel, speed, offset):
     np.testing.assert_array_equal(read(reader, heard), EVERY)
 
 
+def test_speed_and_yaw_are_found(kernel):
+    reader, heard = simulated(kernel, EVERY[:30], speed_mm_per_s=12.5, yaw_deg=4.0)
+    track = track_slide(reader, heard)
+    assert track.posture.speed_mm_per_s == pytest.approx(12.5, rel=5e-3)
+    assert track.posture.yaw_deg == pytest.approx(4.0, abs=1.6)
+    np.testing.assert_allclose(np.diff(track.passed_s), 6.0 / 12.5, rtol=0.02)
+
+
 @pytest.mark.press
 @for_each(
     "readout",
@@ -36,11 +46,24 @@ def test_other_amplifiers_are_read_too(kernel, readout):
 
 def test_the_gain_does_not_matter(kernel):
     cells = cells_of(TEXT)
-    reader, heard = simulated(kernel, cells, speed_mm_per_s=40.0)
-    assert text_of(read(reader, Voltages(heard.time_s + 100.0, -3.7 * heard.voltage_V))) == TEXT
+    reader, heard = simulated(kernel, cells)
+    assert text_of(read(reader, Voltages(heard.time_s + 100.0, 3.7 * heard.voltage_V))) == TEXT
 
 
 @pytest.mark.press
+def test_less_is_read_the_louder_the_noise(kernel):
+    cells = cells_of(TEXT)
+    found = []
+    for noise in (1.0, 25.0):
+        reader, heard = simulated(kernel, cells, noise_mV=noise)
+        try:
+            found.append(share(cells, read(reader, heard)))
+        except NoDotError:
+            found.append(0.0)
+    assert found[0] == 1.0
+    assert found[1] < 0.9
+
+
 def test_a_missing_dot_is_read_as_missing(kernel):
     """Dot 6 of the second of three full cells."""
 
@@ -62,6 +85,13 @@ def test_worn_dots_and_hum_are_read_through(kernel):
 
 
 @pytest.mark.press
+def test_a_line_with_dots_in_one_column_is_read_as_its_left_one(kernel):
+    """Nothing tells the columns apart."""
+    reader, heard = simulated(kernel, cells_of("label".replace("e", "k")))
+    assert text_of(read(reader, heard)) == "labkl"
+
+
+@pytest.mark.press
 @pytest.mark.parametrize("name", ["threshold", "learned"])
 def test_the_other_decoders_read_a_plain_line(kernel, name, monkeypatch):
     monkeypatch.setattr(learned, "TRAINING_CELLS", 320)
@@ -75,3 +105,10 @@ def test_the_other_decoders_read_a_plain_line(kernel, name, monkeypatch):
 def test_every_cell_is_read_by_pressing(kernel, name):
     reader, heard = simulated(kernel, EVERY, mode="press", noise_mV=0.2, offset_mm=0.2)
     np.testing.assert_array_equal(read(reader, heard, name), EVERY)
+
+
+def test_silence_is_no_text(kernel):
+    reader, heard = simulated(kernel, np.array([1]))
+    noise = 1e-3 * np.random.default_rng(0).standard_normal(heard.voltage_V.shape)
+    with pytest.raises(NoDotError, match="nothing stands out of their noise"):
+        track_slide(reader, Voltages(heard.time_s, noise))

@@ -9,7 +9,8 @@ from foundation.errors import InputError
 from geometry.braille_standards import standard
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.conditions import HAND
-from softdot.reading.decoders.track import NoDotError, track_slide
+from softdot.reading.decoders.hand import track_hand
+from softdot.reading.decoders.onset import NoDotError
 from softdot.reading.line_filter.charge import ChargeBlocks
 from softdot.reading.line_filter.line_reader import LineReader
 from softdot.reading.line_filter.mains import hum_frequency_Hz, hum_state, without_hum
@@ -37,7 +38,7 @@ def line(**changed):
 
 @cache
 def track_of(**changed):
-    return track_slide(*line(**changed))
+    return track_hand(*line(**changed))
 
 
 def in_parts(voltage, length):
@@ -105,14 +106,14 @@ def test_silence_is_no_text(hum_mV):
     noise = 1e-3 * np.random.default_rng(0).standard_normal(heard.voltage_V.shape)
     hum = 1e-3 * hum_mV * np.sin(2.0 * np.pi * 51.0 * heard.time_s)[:, None]
     with pytest.raises(NoDotError, match="nothing stands out of their noise"):
-        track_slide(reader, Voltages(heard.time_s, noise + hum))
+        track_hand(reader, Voltages(heard.time_s, noise + hum))
 
 
 def test_what_is_no_braille_is_not_certain():
     """Channels that have nothing to do with each other: each is later than the one before by an eighth of a second."""
     reader, heard = line()
     apart = np.stack([np.roll(one, 62 * j) for j, one in enumerate(heard.voltage_V.T)], axis=1)
-    track = track_slide(reader, Voltages(heard.time_s, apart))
+    track = track_hand(reader, Voltages(heard.time_s, apart))
     assert not track.is_braille
     assert not track.is_whole
 
@@ -164,5 +165,5 @@ def test_a_drifting_hum_is_followed():
 
 @pytest.mark.press
 def test_the_preset_of_a_hand_is_read():
-    track = track_slide(*line(**HAND, seed=5))
+    track = track_hand(*line(**HAND, seed=5))
     assert text_of(track.cells) == TEXT

@@ -7,6 +7,7 @@ import pytest
 
 from foundation.errors import InputError
 from geometry.braille_standards import standard
+from softdot.reading.decoders.templates import Posture, templates
 from softdot.reading.kernels import electronics_of
 from softdot.reading.recorded_file import read_voltages
 from softdot.reading.voltages import Reader, Voltages, readout_voltages, restored_charge_pC
@@ -107,6 +108,15 @@ def test_a_dot_that_passes_twice_as_fast_gives_twice_the_voltage(kernel):
         for speed in (10.0, 20.0)
     )
     assert np.abs(fast.voltage_V).max() == pytest.approx(2.0 * np.abs(slow.voltage_V).max(), rel=0.01)
+
+
+def test_voltages_are_the_sum_of_templates_where_dots_are_far_apart(kernel):
+    """One dot in each cell, four cells apart: what a decoder expects is what is heard."""
+    own, heard = simulated(kernel, np.array([1, 0, 0, 0, 4]), **NOMINAL)
+    known = templates(own, Posture(10.0), heard.step_s)
+    assert np.abs(heard.voltage_V).max() == pytest.approx(np.abs(known.voltage_V).max(), rel=0.05)
+    energy = float((heard.voltage_V**2).sum())
+    assert energy == pytest.approx(float((known.voltage_V[:, [0, 2]] ** 2).sum()), rel=0.02)
 
 
 @for_each("beside", ["voltage_3_V", "voltage_1_V", "voltage_2_mV"])
