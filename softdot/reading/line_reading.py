@@ -12,7 +12,7 @@ from softdot.arrays.kernel import ArrayKernel
 from softdot.progress import Progress
 from softdot.reading.cells import braille, text_of
 from softdot.reading.conditions import ReadingConditions, refuse_missing_channels, standard_of, standard_warnings
-from softdot.reading.decoders import Seen, decoded
+from softdot.reading.decoders.decoding import Seen, decoded
 from softdot.reading.decoders.fitted import Track
 from softdot.reading.decoders.hand import HandTrack
 from softdot.reading.decoders.model import DecodedCells
