@@ -118,6 +118,7 @@ def test_bad_kernels_are_one_sentence(kernel, tmp_path, capfd):
     assert "kernel.json" in refused(["a", "--kernel", str(tmp_path), "-q"], tmp_path / "out", capfd)
 
 
+@pytest.mark.press
 def test_a_line_that_is_not_believed_has_no_text_and_a_status(kernel_folder, tmp_path, capfd):
     """Two channels are exchanged, each of another row and column."""
     out = tmp_path / "out"
