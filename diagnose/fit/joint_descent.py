@@ -82,7 +82,7 @@ def _limits(nuisance: Nuisance) -> tuple[float, float]:
 def fitted_jointly(
     model: ObservedModel, system: LinearisedSystem, candidates: Sequence[Candidate], start: Floats
 ) -> Joint:
-    """From values (q,) and the system's own nuisances."""
+    """Fit mechanisms and nuisances together, from values (q,) and the system's own nuisances."""
     problem = _Problem(model, system, candidates)
     start = np.concatenate([start, system.values])
     patience = Patience(ITERATIONS, LEAST_GAIN, STILL, 0.5 * max(float(system.informative.sum()), 1.0))

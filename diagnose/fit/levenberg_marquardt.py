@@ -25,7 +25,7 @@ class CostedPoint(Protocol):
 
     @property
     def cost(self) -> float:
-        """What becomes least, infinite where there is no answer."""
+        """The number that becomes least, infinite where there is no answer."""
 
 
 PointType = TypeVar("PointType", bound=CostedPoint)

@@ -105,7 +105,7 @@ def findings_of(found: Compared, detected: Checked, report: Report) -> Findings:
 
 
 def evidence_of(found: Compared, detected: Checked, group: Sequence[int], held_out: Fit | None) -> Evidence:
-    """All that the rules look at."""
+    """Evidence with all that the rules look at."""
     best, judge = found.best, found.judge
     if best is None or best.fit is None:
         return Evidence(detected.p_value)

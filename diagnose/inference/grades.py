@@ -12,7 +12,7 @@ from diagnose.statistics.error_rates import RATES
 
 @dataclass(frozen=True)
 class Thresholds:
-    """What decides, in one place.
+    """All thresholds, in one place.
 
     level : chance per recording of a mismatch where there is none.
     nothing : probability of nothing from which on it is not excluded.
@@ -163,7 +163,7 @@ def main_part(e: Evidence) -> Verdict | None:
 
 
 def kind_only(e: Evidence) -> Verdict | None:
-    """What accounts for most is not one thing, but of one kind."""
+    """Several explanations account for most, and all are of one kind."""
     most = e.share >= THRESHOLDS.most and e.holds
     return KindOnly((*_praise(e), *_against(e)), e.kind) if most and e.kind else None
 

@@ -120,7 +120,7 @@ class _Scoring:
 
     @cached_property
     def axes(self) -> list[_Unknown]:
-        """What is not known: the size of the shapes and the rest of each quantity, and the size of a memory."""
+        """Sizes that are not known: those of the shapes and of the rest of each quantity, and that of a memory."""
         units = self.scorer.discrepancy.kinds
         found = [_Unknown(f"shape {unit}", SMOOTH_SIZES, USUAL_SHAPE) for unit in units]
         found += [_Unknown(f"rest {unit}", np.array([one.size for one in RESTS]), USUAL_ROUGH) for unit in units]

@@ -38,7 +38,7 @@ def loud_lines(recording: Recording, noise: NoiseModels) -> dict[tuple[str, str]
 
 
 def _power(model: NoiseModel, line: Line, time_s: Floats) -> float:
-    """Of a line in whitened samples, whose other noise has power 1."""
+    """Power of a line in whitened samples, whose other noise has power 1."""
     white = model.without_lines().whitening(np.ones(len(time_s), dtype=bool), time_s)(line_basis([line], time_s))
     return float((white**2).sum(axis=1).mean())
 
@@ -68,11 +68,11 @@ class HumEngine(DelegatingEngine):
         self.candidates = others if self._hum is None else (*others, self._hum)
 
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
-        """As the engine, for all but the hum."""
+        """Prepare the engine for all but the hum."""
         super().prepare([c for c in candidates if c is not self._hum], report)
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
-        """As the engine, with the hum added at the output."""
+        """Predict as the engine does, with the hum added at the output."""
         signals = dict(super().predict(run, [s for s in settings if s.candidate is not self._hum]))
         for setting in settings:
             if setting.candidate is self._hum:
@@ -83,7 +83,7 @@ class HumEngine(DelegatingEngine):
         return signals
 
     def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
-        """As the engine, without hum."""
+        """Imagine as the engine does, without hum."""
         return super().imagine(run, [s for s in settings if s.candidate is not self._hum])
 
     def _wave(self, place: int, run: int, pair: Sequence[float]) -> Floats:

@@ -63,7 +63,7 @@ def checked(
 
 @dataclass(frozen=True)
 class NuisancePull:
-    """Of what floats against its priors. excess : sum of squared distances above what chance makes.
+    """How far nuisances are pulled from their priors. excess : sum of squared distances above what chance makes.
 
     p_value : of the parameter that lies farthest off, Bonferroni over all that have a prior.
     """

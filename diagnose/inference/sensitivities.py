@@ -31,7 +31,7 @@ class Sensitivity:
 def sensitivity(
     model: ObservedModel, values: Floats, candidate: Candidate, others: Sequence[Setting] = ()
 ) -> Sensitivity:
-    """Of one candidate beside others that are on, at nuisances (p,)."""
+    """Sensitivity of the signals to one candidate beside others that are on, at nuisances (p,)."""
     without = model.vector(values, others)
     count = len(candidate.coordinates)
 

@@ -92,7 +92,7 @@ def errors(
     settings: Sequence[Setting],
     gains: Floats,
 ) -> Fit:
-    """Of some presses (numbers); gains : (presses,) log-scores over the baseline."""
+    """Errors on some presses (numbers); gains : (presses,) log-scores over the baseline."""
     samples = model.samples
     names = tuple(f"{model.runs[run].label}, press {press + 1}" for run, press in (samples.presses[n] for n in presses))
     own = [n for n in presses if n < len(gains)]

@@ -81,7 +81,7 @@ class Scene:
 
     @property
     def capacitance_pF(self) -> float:
-        """Of film and input together, the least of the runs."""
+        """Capacitance of film and input together, the least of the runs."""
         inputs = [readout.input_capacitance_pF for readout in self.readouts if readout.mode == "voltage"]
         return self.share * film_capacitance_pF(self.model) + min(inputs, default=0.0)
 
@@ -107,14 +107,14 @@ class Scene:
 
     @property
     def conductance_uS(self) -> float:
-        """Of the input, the least of the runs, and what discharges film and input within a run, together."""
+        """Least conductance of the input of all runs, and what discharges film and input within a run, together."""
         given = [1.0 / r.input_resistance_MOhm if r.input_resistance_MOhm else 0.0 for r in self.readouts]
         return min(given) + 1e-6 * self.capacitance_pF / self.scales.lasting_s
 
 
 @dataclass(frozen=True)
 class CouponScene:
-    """What the candidates of a coupon depend on: point, the baseline, gives the scales."""
+    """All that the candidates of a coupon depend on: point, the baseline, gives the scales."""
 
     recording: Recording
     material: Material

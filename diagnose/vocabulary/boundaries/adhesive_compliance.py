@@ -18,7 +18,7 @@ NODES = 0.1, 0.35, 0.65, 1.0  # of the way to the softest
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of every bond that the stack has."""
+    """Yield candidates for every bond that the stack has."""
     yield from (_adhesive(scene, bond) for bond in scene.bonds)
 
 
@@ -43,7 +43,7 @@ def _adhesive(scene: Scene, bond: str) -> Candidate:
 
 
 def _stiffness(compliance: float) -> float:
-    """What is stiffer than any glue is as good as perfect."""
+    """Stiffness as a law takes it; what is stiffer than any glue is as good as perfect."""
     return 1.0 / max(compliance, 1.0 / PERFECT_N_PER_MM3)
 
 

@@ -12,7 +12,7 @@ FIRST_TOUCH_MM = 2e-3  # by which a moulded surface gives way before it bears (r
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of any dot whose path was recorded: a force that drives closes the gap first."""
+    """Yield candidates for any dot whose path was recorded: a force that drives closes the gap first."""
     if scene.path_shown:
         yield _gap(scene)
 

@@ -15,7 +15,7 @@ RIM_NODES = (0.2 * LARGEST_PATCH, 0.5 * LARGEST_PATCH, LARGEST_PATCH)
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of every bond that the stack has."""
+    """Yield candidates for every bond that the stack has."""
     yield from (_delamination(scene, bond) for bond in scene.bonds)
 
 

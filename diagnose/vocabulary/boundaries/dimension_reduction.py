@@ -9,13 +9,13 @@ from solve.mechanisms.boundaries.dimension_reduction import DIMENSION_REDUCTION
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of all but plates."""
+    """Yield candidates for all but plates."""
     if scene.model.dot.shape != "plate":
         yield _dimension()
 
 
 def _dimension() -> Candidate:
-    """From the declared shape at 0 to the other one at 1; only the ends exist."""
+    """The dimension, from the declared shape at 0 to the other one at 1; only the ends exist."""
     coordinate = Coordinate("other_shape", 0.0, 1.0, (1.0,), (1.0,))
     return Candidate(DIMENSION_REDUCTION.name, "dot", (coordinate,), lambda _: {})
 

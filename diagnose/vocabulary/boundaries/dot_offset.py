@@ -19,7 +19,7 @@ LEAST_REACH = 0.04  # of the segment, for a dot that stands at its side already
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of any dot but a plate, which has no middle."""
+    """Yield candidates for any dot but a plate, which has no middle."""
     if scene.model.dot.shape != "plate":
         yield _offset(scene)
 

@@ -14,7 +14,7 @@ SLIPPERY, ROUGHEST = 0.1, 1.5  # dry rubber on plastic has 0.3 to 1
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of any dot."""
+    """Yield candidates for any dot."""
     yield _friction()
 
 

@@ -22,20 +22,20 @@ MOST, EVERYDAY = 1.5, 0.003  # of the largest force; the latter any tester has (
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Where a force answers, which alone shows it: of one that drives nobody knows what a guide takes."""
+    """Yield candidates where a force answers: of one that drives nobody knows what a guide takes."""
     if scene.shows(FORCE):
         yield _guide(scene.force_N, scene.depth_mm)
 
 
 def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
-    """Where a displacement drives: of a force that drives nobody knows what a guide takes."""
+    """Yield candidates where a displacement drives: of a force that drives nobody knows what a guide takes."""
     if all(run.drive == "displacement_mm" for run in scene.recording.runs):
         same = (HYSTERESIS.name, SPECIMEN)  # of the specimen itself, by plays of its strain
         yield replace(_guide(scene.force_N, scene.travel_mm), identical_to=(same,))
 
 
 def _guide(force_N: float, travel_mm: float) -> Candidate:
-    """In terms of the largest force and travel."""
+    """The candidate, in terms of the largest force and travel."""
     travels = [share * travel_mm for share in TRAVELS]
     coordinates = tuple(Coordinate(f"force_from_{travel:.3g}_mm", 0.0, MOST, (0.05, 0.5)) for travel in travels)
 

@@ -17,13 +17,13 @@ HEAVIEST_G = 200_000.0  # the crosshead, or the carriage of a linear motor, whic
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Where a force answers, or drives what moves."""
+    """Yield candidates where a force answers, or drives what moves."""
     if scene.shows(FORCE) or any(drive == FORCE for drive, _ in scene.shown):
         yield _mass(scene)
 
 
 def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
-    """Where the load cell moves."""
+    """Yield candidates where the load cell moves."""
     if any(run.drive != "displacement_mm" for run in scene.recording.runs):
         return
     coordinate = growing("mass", GRIP_G, HEAVIEST_G, (GRIP_G, 10.0 * GRIP_G))

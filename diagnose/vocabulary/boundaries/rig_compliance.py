@@ -16,13 +16,13 @@ MOST_OF_TRAVEL = 0.25  # a tester that takes more than a quarter of the travel i
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of any rig whose path was recorded."""
+    """Yield candidates for any rig whose path was recorded."""
     if scene.path_shown:
         yield _compliance(scene)
 
 
 def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
-    """Of the tester; with largest travel over largest force nothing is left to the coupon."""
+    """Yield candidates for the tester; with largest travel over largest force nothing is left to the coupon."""
     scale = scene.travel_mm / scene.force_N
     coordinate = growing("compliance", scale, MOST_OF_TRAVEL * scale, (0.05 * scale, 0.2 * scale))
 

@@ -14,19 +14,19 @@ FADING = 0.5  # of that speed: where Stribeck's friction fades, which presses at
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Where a force answers, which alone shows it."""
+    """Yield candidates where a force answers, which alone shows it."""
     if scene.shows(FORCE):
         yield _guide(scene.force_N, scene.depth_mm, scene.scales)
 
 
 def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
-    """Where a displacement drives."""
+    """Yield candidates where a displacement drives."""
     if all(run.drive == "displacement_mm" for run in scene.recording.runs):
         yield _guide(scene.force_N, scene.travel_mm, time_scales(scene.recording))
 
 
 def _guide(force_N: float, travel_mm: float, scales: TimeScales) -> Candidate:
-    """In terms of the largest force and of the speed of the quickest loading."""
+    """The candidate, in terms of the largest force and of the speed of the quickest loading."""
     speed = travel_mm / scales.loading_s
     coordinates = (
         Coordinate("viscous", 0.0, MOST, (0.05, 0.5)),

@@ -14,14 +14,14 @@ from solve.mechanisms.circuit.charge_leakage import CHARGE_LEAKAGE
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Where the input's impedance counts: of all channels together, or of one."""
+    """Yield candidates where the input's impedance counts: of all channels together, or of one."""
     if scene.voltage_mode:
         yield from (_leakage(scene, component) for component in ("readout", "film"))
         yield from (_leakage(scene.of_each_channel, channel) for channel in scene.numbered)
 
 
 def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidate]:
-    """Of all channels together; what shows is the time constant."""
+    """Yield candidates for all channels together; what shows is the time constant."""
     if scene.voltage_mode:
         yield from (_with_time_constant(scene, _leakage(scene, component)) for component in ("readout", "film"))
 
@@ -39,7 +39,7 @@ def _leakage(scene: Scene, component: str) -> Candidate:
 
 
 def _with_time_constant(scene: Scene, one: Candidate) -> Candidate:
-    """What a leak shows is its time constant; its resistance is that for the assumed capacitance.
+    """A leak with its time constant, which is what shows; its resistance is that for the assumed capacitance.
 
     A charge that is gone within a sample leaves the derivative of the force, whose size the free sensitivity takes.
     """

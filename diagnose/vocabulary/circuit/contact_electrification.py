@@ -17,17 +17,17 @@ LARGEST_EXPONENT = log(3.0)  # of the area: charge that grows with the pressure 
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of any film."""
+    """Yield candidates for any film."""
     yield _touch(scene)
 
 
 def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidate]:
-    """As of a segment."""
+    """Yield the candidates of a segment."""
     yield _touch(scene)
 
 
 def _touch(scene: Scene) -> Candidate:
-    """In terms of the charge that makes the largest voltage recorded."""
+    """The candidate, in terms of the charge that makes the largest voltage recorded."""
     scale = scene.capacitance_pF * (scene.voltage_V or 1.0)
     declared = like(scene.model.physics.added, ContactCharge()).charge_pC
     coordinates = (

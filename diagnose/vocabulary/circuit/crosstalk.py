@@ -19,7 +19,7 @@ MOST = 1.0  # of the same: half of what a neighbour has
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Where there are several channels."""
+    """Yield candidates where there are several channels."""
     if scene.voltage_mode:
         yield from (_tied(scene.of_each_channel, pair) for pair in scene.paired)
     yield from (_mixed(channel) for channel in scene.numbered)

@@ -17,19 +17,22 @@ PULLED = 0.1  # of the largest force: what is less is no pull
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of any film."""
+    """Yield candidates for any film."""
     yield _plays(scene, WIDTHS, (), 0.0, MOST)
 
 
 def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidate]:
-    """Of a sensor that may saturate too: shares of either sign. What is pulled too may differ between push and pull."""
+    """Yield candidates for a sensor that may saturate too: shares of either sign.
+
+    What is pulled too may differ between push and pull.
+    """
     pulled = any(run.drive_values.min() < -PULLED * run.drive_values.max() for run in recording.runs)
     widths, of_push = (OF_LOOP, (*OF_LOOP, NEVER)) if pulled else (WIDTHS, ())
     yield _plays(scene, widths, of_push, -MOST_OF_SENSOR, MOST_OF_SENSOR)
 
 
 def _plays(scene: Scene, widths: Sequence[float], of_push: Sequence[float], low: float, high: float) -> Candidate:
-    """In terms of the largest charge."""
+    """The candidate, in terms of the largest charge."""
     largest_pC, count = scene.charge_pC, len(widths)
     names = [f"behind_{width:g}" for width in widths] + [f"push_behind_{width:g}" for width in of_push]
     coordinates = tuple(Coordinate(name, low, high, (0.05 * high, 0.4 * high)) for name in names)

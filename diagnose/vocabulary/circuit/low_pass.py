@@ -18,13 +18,13 @@ ONE_STAGE = 1e-3  # Q^2 below which the second stage is too fast to be seen
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of any amplifier: of all channels together, or of one."""
+    """Yield candidates for any amplifier: of all channels together, or of one."""
     yield _low_pass(scene, "readout")
     yield from (_low_pass(scene, channel) for channel in scene.numbered)
 
 
 def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidate]:
-    """Of all channels together."""
+    """Yield candidates for all channels together."""
     yield _low_pass(scene, "readout")
 
 

@@ -14,12 +14,12 @@ HUM = 10.0  # of the largest voltage
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of any amplifier."""
+    """Yield candidates for any amplifier."""
     yield _hum(scene)
 
 
 def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidate]:
-    """As of a segment."""
+    """Yield the candidates of a segment."""
     yield _hum(scene)
 
 

@@ -12,7 +12,7 @@ from solve.mechanisms.circuit.parasitic_capacitance import PARASITIC_CAPACITANCE
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Where the input's impedance counts."""
+    """Yield candidates where the input's impedance counts."""
     if scene.voltage_mode:
         yield _parasitic(scene)
 

@@ -17,12 +17,12 @@ HOTTEST_K = 30.0  # a finger is about 10 K warmer than the room
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of any film."""
+    """Yield candidates for any film."""
     yield _heat(scene)
 
 
 def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidate]:
-    """As of a segment."""
+    """Yield the candidates of a segment."""
     yield _heat(scene)
 
 

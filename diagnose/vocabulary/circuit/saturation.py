@@ -17,7 +17,7 @@ HARD = 1e-3  # one over the sharpness that is as good as no knee
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of any amplifier."""
+    """Yield candidates for any amplifier."""
     yield _saturation(scene)
 
 

@@ -13,7 +13,7 @@ SLACK = -0.002  # a film with more slack buckles
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of any film."""
+    """Yield candidates for any film."""
     yield _prestretch(scene)
 
 

@@ -15,7 +15,7 @@ WEAKEST_MPA = 5.0  # a tenth of what PVDF is sold with
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of any film."""
+    """Yield candidates for any film."""
     yield _yield_stress(scene)
 
 

@@ -19,7 +19,7 @@ LARGEST_EXPONENT = 60.0  # of a coupon
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of the media that this rig has."""
+    """Yield candidates for the media that this rig has."""
     for component in MEDIA:
         material = scene.model.materials.get(component)
         if material is not None:
@@ -27,7 +27,7 @@ def of_segment(scene: Scene) -> Iterator[Candidate]:
 
 
 def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
-    """Of what is compressible."""
+    """Yield candidates for what is compressible."""
     if scene.point.poisson_ratio < COMPRESSIBLE:
         material = scene.material
         yield _of_specimen(material if isinstance(material, Hyperfoam) else _as_foam(material))

@@ -28,7 +28,7 @@ STEEP = 8.0  # exponent of the Ogden term that stiffens
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of the media that this rig has: a law that goes over into the declared one, with constants 0 where it is off."""
+    """Yield candidates for the media that this rig has: laws that go over into the declared one with constants 0."""
     for component in MEDIA:
         material = scene.model.materials.get(component)
         if isinstance(material, NeoHookean):
@@ -42,14 +42,14 @@ def of_segment(scene: Scene) -> Iterator[Candidate]:
 
 
 def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
-    """Of all but foams."""
+    """Yield candidates for all but foams."""
     if not isinstance(scene.material, Hyperfoam):
         by_force = any(run.drive == "force_N" for run in scene.recording.runs)
         yield _of_specimen(scene.material, scene.point, scene.travel_mm, by_force)
 
 
 def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidate]:
-    """Of whatever medium strains the film."""
+    """Yield candidates for whatever medium strains the film."""
     yield _of_sensor()
 
 
@@ -67,7 +67,7 @@ def _of_sensor() -> Candidate:
 
 
 def _knowles(component: str) -> Candidate:
-    """From the exponential law to Yeoh's quadratic, by the slope of dW/dI1 at rest, b (n - 1) / n, and 1 / (n - 1).
+    """Knowles' law from the exponential one to Yeoh's, by the slope of dW/dI1 at rest, b (n - 1) / n, and 1 / (n - 1).
 
     Gent's law with the limit J of I1 - 3 has the slope 1 / J at rest.
     """
@@ -158,7 +158,7 @@ def _of_specimen(material: Material, point: MaterialPoint, travel_mm: float, by_
 
 
 def _force(point: MaterialPoint, travel_mm: float) -> float:
-    """Of the elastic coupon at a travel, from rest."""
+    """Force of the elastic coupon at a travel, from rest."""
     return float(point.answer(np.array([0.0, 1.0]), np.array([0.0, travel_mm]), "displacement_mm")[1])
 
 

@@ -82,7 +82,7 @@ def relative_error(make: type[Candidate], name: str, parameter: str) -> Candidat
 
 
 def kinds_at(setting: Setting) -> Iterator[str]:
-    """Of a medium, the stiffness; where that is less than stated it gives way in series with the film."""
+    """Kinds of an error of a medium's stiffness; one that is less than stated gives way in series with the film."""
     factors = setting.candidate.parameters(setting.values)
     if setting.candidate.component in ("film", SPECIMEN) or "modulus_factor" not in factors:
         return

@@ -26,7 +26,7 @@ LARGEST_LOSS = 0.9  # of a coupon
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of the media that this rig has."""
+    """Yield candidates for the media that this rig has."""
     for component in MEDIA:
         if component in scene.model.materials:
             yield _softening(scene, component)
