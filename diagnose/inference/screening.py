@@ -34,7 +34,7 @@ class Screened:
 
 
 def screened(system: LinearisedSystem, sensitivities: Sequence[Sensitivity], noise_degrees: float) -> Screened:
-    """Screen candidates by the score test along the tangent and each finite change, whichever is stronger (Bonferroni)."""
+    """Screen by the score test along the tangent and each finite change, whichever shows more (Bonferroni)."""
     marginal = Marginal(system.weighted_rows(system.nuisance_design), system.sigma)
     white = marginal(system.weighted_rows(system.residual))
     p_values, explained, estimates = [], [], []
