@@ -157,8 +157,10 @@ def identified(e: Evidence) -> Verdict | None:
 
 
 def main_part(e: Evidence) -> Verdict | None:
-    """Few explanations are left, which account for most; several mechanisms only with values that parts can have."""
-    few = e.group <= THRESHOLDS.largest_group and not (e.implausible and e.several)
+    """Few explanations are left, which account for most; several mechanisms together only where nothing flexible does
+    better, and with values that parts can have.
+    """
+    few = e.group <= THRESHOLDS.largest_group and not (e.several and (e.implausible or e.beaten))
     return MainPart((*_praise(e), *_against(e))) if e.share >= THRESHOLDS.most and few and e.holds else None
 
 

@@ -71,6 +71,7 @@ EVIDENCE = st.builds(
         (replace(PART, error=0.008), Identified),  # no more than the flaws of an ordinary rig
         (replace(PART, share=0.85), Unexplained),
         (replace(CLEAR, share=0.96, error=0.03, something_else=0.99, share_of_else=0.999), MainPart),
+        (replace(CLEAR, share=0.96, error=0.03, something_else=0.99, share_of_else=0.999, several=True), KindOnly),
         (replace(CLEAR, something_else=0.99, share_of_else=0.999), Identified),  # what is left is no more than flaws
     ],
 )
