@@ -52,7 +52,7 @@ assert ratio["low"] < truth < ratio["high"]
 assert not agreeing.mismatch
 assert unexplained.mismatch and unexplained.content["unexplained"] and not unexplained.missing_physics
 first, second = rivals(unexplained)["probability"].nlargest(2)
-assert first > 10.0 * second
+assert first > 100.0 * second
 assert rivals(unexplained)["error_left"].min() > 0.02
 """,
 }
