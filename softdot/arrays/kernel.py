@@ -8,9 +8,7 @@ summed. What this misses is the stretch of the film, which is quadratic in what 
 """
 
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass
-from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +17,7 @@ import numpy as np
 
 from foundation.arrays import Bools, Floats, Ints
 from foundation.errors import InputError
+from foundation.table_checksum import table_checksum
 
 FORMAT = "softdot-kernel/1"
 NPZ, JSON = "kernel.npz", "kernel.json"
@@ -121,7 +120,7 @@ class ArrayKernel:
         with (folder / NPZ).open("wb") as file:
             np.savez_compressed(file, **tables)
         about = {"format": FORMAT, **self.about}
-        text = json.dumps({CHECKSUM: _checksum(tables, about), **about}, indent=1)
+        text = json.dumps({CHECKSUM: table_checksum(tables, about), **about}, indent=1)
         (folder / JSON).write_text(text, encoding="utf-8")
 
 
@@ -144,18 +143,9 @@ def load_kernel(folder: Path) -> ArrayKernel:
     told = about.pop(CHECKSUM, None)
     if told is None:
         raise InputError(f"{where}: has no {CHECKSUM}, as kernels of earlier versions; {AGAIN}")
-    if told != _checksum(tables, about):
+    if told != table_checksum(tables, about):
         raise InputError(f"{where}: {CHECKSUM} is not that of {JSON} and {NPZ}, one of which was changed; {AGAIN}")
     return ArrayKernel(**{name: table.astype(np.float64) for name, table in tables.items()}, about=about)
-
-
-def _checksum(tables: Mapping[str, Any], about: Mapping[str, Any]) -> str:
-    """SHA-256 of all that a kernel holds: what is said of it, and names, types, shapes and numbers of its tables."""
-    sha = sha256(json.dumps(about, sort_keys=True).encode())
-    for name in TABLES:
-        sha.update(f"{name} {tables[name].dtype} {tables[name].shape} ".encode())
-        sha.update(np.ascontiguousarray(tables[name]).tobytes())
-    return sha.hexdigest()
 
 
 def interpolate(axes: tuple[Floats, ...], table: Floats, at: list[Floats]) -> Floats:

@@ -1,9 +1,7 @@
 """A learned kernel as tables that answer touches, saved in a folder with a checksum."""
 
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass
-from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +9,7 @@ import numpy as np
 
 from foundation.arrays import Floats, Ints
 from foundation.errors import InputError
+from foundation.table_checksum import table_checksum
 
 FORMAT = "softdot-learned-kernel/1"
 NPZ, JSON, CHECKSUM = "kernel.npz", "kernel.json", "checksum_sha256"
@@ -49,7 +48,7 @@ class LearnedKernel:
         with (folder / NPZ).open("wb") as file:
             np.savez_compressed(file, **tables)
         about = {"format": FORMAT, **self.about}
-        text = json.dumps({CHECKSUM: _checksum(tables, about), **about}, indent=1, ensure_ascii=False)
+        text = json.dumps({CHECKSUM: table_checksum(tables, about), **about}, indent=1, ensure_ascii=False)
         (folder / JSON).write_text(text, encoding="utf-8")
 
 
@@ -73,15 +72,6 @@ def load_learned_kernel(folder: Path) -> LearnedKernel:
         raise InputError(f"{where}: cannot be read ({error}); {AGAIN}") from None
     if about.get("format") != FORMAT:
         raise InputError(f"{where}: format = {str(about.get('format'))[:40]!r}: must be '{FORMAT}'; {AGAIN}")
-    if about.pop(CHECKSUM, None) != _checksum(tables, about):
+    if about.pop(CHECKSUM, None) != table_checksum(tables, about):
         raise InputError(f"{where}: {CHECKSUM} is not that of {JSON} and {NPZ}, one of which was changed; {AGAIN}")
     return LearnedKernel(**tables, about=about)
-
-
-def _checksum(tables: Mapping[str, Any], about: Mapping[str, Any]) -> str:
-    """SHA-256 of all that a kernel holds: what is said of it, and names, types, shapes and numbers of its tables."""
-    sha = sha256(json.dumps(about, sort_keys=True).encode())
-    for name in TABLES:
-        sha.update(f"{name} {tables[name].dtype} {tables[name].shape} ".encode())
-        sha.update(np.ascontiguousarray(tables[name]).tobytes())
-    return sha.hexdigest()
