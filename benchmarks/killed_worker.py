@@ -146,16 +146,20 @@ def run(one: Trial, out: Path, cache: Path, more: list[str], half: int = 0, work
     return time.perf_counter() - begun
 
 
-def largest_difference(one: Any, other: Any, size: float = 0.0) -> float:
-    """Of any two numbers, relative to the larger of them or of a list of theirs; infinite where more differs."""
+def largest_difference(one: Any, other: Any, place: str = "", size: float = 0.0) -> tuple[float, str]:
+    """Of any two numbers, relative to the larger of them or of a list of theirs, and its place; infinite where more
+    differs.
+    """
     if isinstance(one, dict) and isinstance(other, dict) and one.keys() == other.keys():
-        return max((largest_difference(one[key], other[key]) for key in one.keys() - APART), default=0.0)
+        keys = sorted(one.keys() - APART)
+        return max((largest_difference(one[key], other[key], f"{place}.{key}") for key in keys), default=(0.0, place))
     if isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
         size = max((abs(x) for x in (*one, *other) if isinstance(x, float)), default=0.0)
-        return max((largest_difference(x, y, size) for x, y in zip(one, other, strict=True)), default=0.0)
+        each = enumerate(zip(one, other, strict=True))
+        return max((largest_difference(*two, f"{place}[{n}]", size) for n, two in each), default=(0.0, place))
     if isinstance(one, float) and isinstance(other, float):
-        return abs(one - other) / max(abs(one), abs(other), size, 1e-300)
-    return 0.0 if one == other else math.inf
+        return abs(one - other) / max(abs(one), abs(other), size, 1e-300), place
+    return (0.0 if one == other else math.inf), place
 
 
 def left() -> list[str]:
@@ -174,10 +178,11 @@ def tried(name: str, folder: Path) -> bool:
         stray = [command for command in left() if "dask" not in command]
     stray += left()
     found = (json.loads((out / one.summary).read_text("utf-8")) for out in (alone, there))
-    difference = largest_difference(*found)
+    difference, place = largest_difference(*found)
     print(
         f"{name}: {presses} presses; {alone_s:.0f} s on this computer, {seconds:.0f} s on two workers, "
-        f"{'one' if killed else 'none'} of them killed half way; largest difference {difference:.1e}; "
+        f"{'one' if killed else 'none'} of them killed half way; largest difference {difference:.1e}"
+        f"{f' at {place[1:]}' if difference else ''}; "
         f"{len(stray)} processes left",
         flush=True,
     )

@@ -4,7 +4,6 @@ What is linear leaves only inner products (variable projection; Golub and Pereyr
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from diagnose.fit.levenberg_marquardt import Patience, minimised
 from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.nuisances import slope_by_step
 from diagnose.fit.observed_model import SLOPE_STEP_SHARE, ObservedModel
+from diagnose.fit.secant_slopes import SecantSlopes
 from diagnose.forward import Candidate, Coordinate, Setting
 from foundation.arrays import Floats
 
@@ -22,10 +22,7 @@ LEAST_GAIN = 1e-3  # in half squares: less is no progress
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """values : (q,). predicted : (n,) there. left : weighted residual. cost : half its square.
-
-    One is equal to itself alone, so that what was found there can be looked up.
-    """
+    """values : (q,). predicted : (n,) there. left : weighted residual. cost : half its square."""
 
     values: Floats
     predicted: Floats
@@ -87,10 +84,10 @@ def descent(
 
 def descended(problem: Descent, start: Floats, rough: float = 0.0) -> tuple[Place, Floats]:
     """The best place from a start (q,), and the slopes (n, q) there; a step that gains less than rough is the last."""
-    slopes_at = lru_cache(maxsize=1)(problem.slopes)
+    slopes = SecantSlopes(problem.slopes)
 
-    def expansion(here: Place) -> tuple[Floats, Floats]:
-        columns = problem.system.weighted_rows(slopes_at(here))
+    def expansion(here: Place, anew: bool) -> tuple[Floats, Floats]:
+        columns = problem.system.weighted_rows(slopes.at(here, anew))
         cleared = problem.system.quadratic.apply_inverse(columns)
         return columns.T @ cleared, cleared.T @ here.left
 
@@ -99,7 +96,7 @@ def descended(problem: Descent, start: Floats, rough: float = 0.0) -> tuple[Plac
     found = minimised(problem.at, expansion, start, bounds(problem.candidates), patience)
     if not np.isfinite(found.cost):
         return found, np.zeros((len(found.predicted), len(start)))
-    return found, slopes_at(found)
+    return found, slopes.at(found, anew=True)
 
 
 def lowest(problem: Descent, starts: Sequence[Floats], rough: float = 0.0) -> Place | None:

@@ -15,6 +15,7 @@ from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.nuisances import Nuisance
 from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.secant_slopes import SecantSlopes
 from diagnose.forward import Candidate
 from foundation.arrays import Floats
 
@@ -40,6 +41,7 @@ class _Problem:
         self.precision = np.concatenate([np.zeros(self.count), 1.0 / model.sigma**2])
         own = np.array([_limits(nuisance) for nuisance in model.nuisances]).reshape(-1, 2)
         self.limits = np.concatenate([bounds(candidates), own])
+        self.slopes = SecantSlopes(self.differenced)
 
     def at(self, point: Floats) -> Place:
         """Residual and cost at a point (q + p,); the cost is infinite where the model has no answer."""
@@ -51,21 +53,20 @@ class _Problem:
         cost = 0.5 * self.nuisance_design.square(left) + 0.5 * float(self.precision @ point**2)
         return Place(point, predicted, left, cost)
 
-    def expansion(self, here: Place) -> tuple[Floats, Floats]:
-        """Hessian (q + p, q + p) and downhill gradient of the cost."""
-        columns = self.columns(here.values)
+    def expansion(self, here: Place, anew: bool) -> tuple[Floats, Floats]:
+        """Hessian (q + p, q + p) and downhill gradient of the cost. anew : see minimised."""
+        columns = self.system.weighted_rows(self.slopes.at(here, anew))
         cleared = self.nuisance_design.apply_inverse(columns)
         gradient = cleared.T @ here.left - self.precision * here.values
         return columns.T @ cleared + np.diag(self.precision), gradient
 
-    def columns(self, point: Floats) -> Floats:
-        """Weighted slopes (l, q + p)."""
-        values, nuisances = point[: self.count], point[self.count :]
+    def differenced(self, here: Place) -> Floats:
+        """Slopes (n, q + p) at a place."""
+        values, nuisances = here.values[: self.count], here.values[self.count :]
         on = settings(self.candidates, values)
         problem = descent(self.model, _at(self.system, nuisances), self.candidates, on)
-        predicted = self.model.vector(nuisances, on)
-        slopes = problem.slopes(Place(values, predicted, np.zeros(0), 0.0))
-        return self.system.weighted_rows(np.column_stack([slopes, self.model.tangents(nuisances, on)]))
+        slopes = problem.slopes(Place(values, here.predicted, np.zeros(0), 0.0))
+        return np.column_stack([slopes, self.model.tangents(nuisances, on)])
 
 
 def _at(system: LinearisedSystem, nuisances: Floats) -> LinearisedSystem:

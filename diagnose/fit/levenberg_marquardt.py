@@ -13,6 +13,7 @@ from foundation.arrays import Floats
 
 FIRST_DAMPING = 1e-3
 TIGHTEST = 1e6  # damping beyond which no step is tried
+KEPT = 0.25  # of the gain that a quadratic model promised: it is made anew where a step gained less
 RIDGE = 1e-12  # on a unit diagonal: coordinates that act exactly alike
 
 
@@ -46,28 +47,34 @@ class Patience(NamedTuple):
 
 def minimised(
     at: Callable[[Floats], PointType],
-    expansion: Callable[[PointType], tuple[Floats, Floats]],
+    expansion: Callable[[PointType, bool], tuple[Floats, Floats]],
     start: Floats,
     limits: Floats,
     patience: Patience,
 ) -> PointType:
     """The best point from a start (q,) within limits (q, 2), the start itself where its cost is infinite.
 
-    at : the point at values. expansion : the Hessian (q, q) and the downhill gradient (q,) of the cost at a point.
+    at : the point at values. expansion : the Hessian (q, q) and the downhill gradient (q,) of the cost at a point, anew
+    or corrected by what the last step showed. They are made anew where a corrected one promised what a step did not
+    keep; the last word is that of one made anew.
     """
     here = at(np.clip(start, *limits.T))
-    damping = FIRST_DAMPING
-    for _ in range(patience.iterations if np.isfinite(here.cost) else 0):
-        hessian, gradient = expansion(here)
+    damping, anew, left = FIRST_DAMPING, True, patience.iterations if np.isfinite(here.cost) else 0
+    while left > 0:
+        left -= anew
+        hessian, gradient = expansion(here, anew)
         misfit = max(here.cost / patience.usual_cost, 1.0)
-        after, damping = _improved(at, here, hessian, gradient, damping, limits, patience.still**2 * misfit)
-        if after is None:
-            break
-        gain, moved = here.cost - after.cost, after.values - here.values
-        here = after
+        least_square = patience.still**2 * misfit
+        after, damping = _improved(at, here, hessian, gradient, damping, limits, least_square if anew else np.inf)
+        if after is not None:
+            gain, moved = here.cost - after.cost, after.values - here.values
+            square, promised = float(moved @ hessian @ moved), float(gradient @ moved)
+            here = after
         least_gain = max(patience.least_gain * misfit, patience.rough_gain)
-        if gain < least_gain or float(moved @ hessian @ moved) < patience.still**2 * misfit:
+        ended = after is None or gain < least_gain or square < least_square
+        if ended and anew:
             break
+        anew = ended or gain < KEPT * (promised - 0.5 * square)
     return here
 
 

@@ -70,7 +70,7 @@ def march(
             if error > TIME_TOLERANCE and size > SMALLEST_IN_TIME:
                 size *= max(0.5, 0.9 * np.sqrt(TIME_TOLERANCE / error)) if error < 4.0 * TIME_TOLERANCE else 0.5
                 continue
-            too_far = opens_too_coarsely(system, past[-1], state) or crushes(system, past[-1], state)
+            too_far = opens_too_coarsely(system, past[-1], state) or crushes(system, past[-1].x, state.x)
             if size > SMALLEST_SUBSTEP and too_far:
                 size *= 0.5
                 continue

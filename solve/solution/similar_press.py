@@ -116,12 +116,13 @@ def reach(
     system: System, linear: LinearSolver, past: list[State], target: Target, kink: bool, guess: Floats | None
 ) -> str | None:
     """Reach a target at once from a guess (count,) beside the equilibrium, else by march, and return what that
-    returns.
+    returns. An element that is crushed where the similar press had crushed it too is no fold that this step made.
     """
     if guess is not None:
         with suppress(NoEquilibriumError):
             state = equilibrate(system, linear, guess, target.load, target.time, past[-1])
-            if not crushes(system, past[-1], state):
+            last = past[-1].x
+            if crushes(system, last, guess) or not crushes(system, last, state.x):
                 past.append(state)
                 del past[:-2]
                 return None
