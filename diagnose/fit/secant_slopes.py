@@ -1,7 +1,8 @@
 """Slopes of a prediction that are differenced once and then corrected by what each step showed.
 
-Broyden's update, as in the secant version of Levenberg and Marquardt's method (Madsen, Nielsen and Tingleff, Methods for
-Non-Linear Least Squares Problems, 2nd edition, 2004, section 3.5): a step costs one prediction, not one for each value.
+Broyden's update, as in the secant version of Levenberg and Marquardt's method (Madsen, Nielsen and Tingleff, Methods
+for Non-Linear Least Squares Problems, 2nd edition, 2004, section 3.5): a step costs one prediction, not one for each
+value.
 """
 
 from collections.abc import Callable
