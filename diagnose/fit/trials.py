@@ -16,7 +16,7 @@ from diagnose.signals.recording import Run
 from foundation.progress import Report
 from solve.solution.errors import NoEquilibriumError
 
-MOST_REMEMBERED = 400  # predictions of one run
+MOST_REMEMBERED = 2000  # predictions of one run
 
 
 @contextmanager

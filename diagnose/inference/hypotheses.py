@@ -6,6 +6,7 @@ and rate-independent, without mechanics.
 """
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -19,7 +20,7 @@ from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted, fit_mechanisms
 from diagnose.fit.rig_discrepancy import VISIBLE_ERROR, RigDiscrepancy, played
 from diagnose.fit.samples import SampleBlock, Samples
-from diagnose.forward import Candidate
+from diagnose.forward import Candidate, NoAnswerError
 from diagnose.inference.conditions import conditions_of
 from diagnose.inference.grades import THRESHOLDS
 from diagnose.inference.held_out_scores import USUAL_SHAPE, HeldOutScorer, LinearHypothesis, Scored
@@ -34,7 +35,8 @@ MOST_MECHANISMS = 3
 MOST_FIRSTS = 3  # hypotheses beside which another mechanism is sought
 WORTH_NATS, WORTH_SHARE = 3.0, 0.5
 """What another mechanism must gain, over all conditions, to be a hypothesis beside those that it is added to, and the
-most of their squares that it may leave."""
+share of the squares of what they leave that it must take away: these and no less than VISIBLE_ERROR, since less may be
+a flaw of the rig."""
 PART_SHARE = 0.5  # of the share of the best: what accounts for less is sought beside it, not it beside others
 PLAY_SHARES = (0.05, 0.15, 0.4)  # of the range of a drive: thresholds of the play operators of something else
 FLAT = 1e6  # sigma of the noise over all samples: a prior for what has none
@@ -108,7 +110,15 @@ class Judge:
         memory = flexible_memory(self.model.samples)
         return self._hypothesis(None, system, self.model, self.found.excess, memory)
 
-    def scored(self, fit: Fitted) -> Hypothesis:
+    def scored(self, fits: Sequence[Fitted]) -> list[Hypothesis]:
+        """The hypotheses of fits, without those that have no answer any more."""
+        found = []
+        for fit in fits:
+            with suppress(NoAnswerError):
+                found.append(self._scored(fit))
+        return found
+
+    def _scored(self, fit: Fitted) -> Hypothesis:
         """The hypothesis of a fit; where it leaves more than a rig's flaws it is fitted anew beside so much, without an
         error of its law, and what predicts better counts. Beside little noise a law that is not exact would follow its
         smallest details otherwise.
@@ -191,9 +201,8 @@ def compared(judge: Judge, rng: np.random.Generator, report: Report) -> Compared
     found = []
     for count, fit in enumerate(fits):
         report("held-out conditions", count, len(fits))
-        one = judge.scored(fit)
-        if judge.share(one) > 0.0:  # what predicts with more error than nothing explains nothing, whatever its score
-            found.append(one)
+        # what predicts with more error than nothing explains nothing, whatever its score
+        found += [one for one in judge.scored([fit]) if judge.share(one) > 0.0]
     grown = _best_first(found)
     while grown and len(grown[0].candidates) < MOST_MECHANISMS and _leaves_too_much(judge, grown[0]):
         more = _with_one_more(judge, grown, report)
@@ -259,7 +268,7 @@ def _with_one_more(judge: Judge, found: Sequence[Hypothesis], report: Report) ->
         for fit in pairs(judge.model, judge.found, first.found_as, report):
             if (names := frozenset(c.name for c in fit.candidates)) not in seen:
                 seen.add(names)
-                more.append(judge.scored(fit))
+                more += judge.scored([fit])
     more = _worth_it(judge, more, best)
     if more and size == 1:
         more += _worth_it(judge, _in_its_place(judge, found, more[0], seen, report), best)
@@ -273,8 +282,9 @@ def _is_a_part(judge: Judge, one: Hypothesis, best: Hypothesis) -> bool:
 
 def _worth_it(judge: Judge, more: Sequence[Hypothesis], best: Hypothesis) -> list[Hypothesis]:
     """Those that predict better than what they are added to for sure, and in practice."""
-    most = np.sqrt(WORTH_SHARE) * judge.error(best)
-    return _best_first([one for one in more if one.score > best.score + WORTH_NATS and judge.error(one) <= most])
+    left = judge.error(best) ** 2
+    most = left - max(WORTH_SHARE * left, VISIBLE_ERROR**2)
+    return _best_first([one for one in more if one.score > best.score + WORTH_NATS and judge.error(one) ** 2 <= most])
 
 
 def _in_its_place(
@@ -289,7 +299,7 @@ def _in_its_place(
             names = frozenset((one.candidates[0].name, second.name))
             if len(names) == 2 and names not in seen:
                 others += paired(judge.model, judge.found, one.found_as, second, [start], report)
-    return [judge.scored(fit) for fit in others]
+    return judge.scored(others)
 
 
 def _best_first(found: Sequence[Hypothesis]) -> list[Hypothesis]:

@@ -1,6 +1,7 @@
 """From screened candidates to a short list of fitted models: single mechanisms, and pairs where one is not enough."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,7 +10,7 @@ from diagnose.fit.descent import descent, lowest
 from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted, common_metric, fit_mechanisms
-from diagnose.forward import Candidate
+from diagnose.forward import Candidate, NoAnswerError
 from diagnose.inference.screening import Screening, least_degrees, screened
 from diagnose.inference.sensitivities import sensitivity
 from diagnose.statistics.error_rates import MOST_FINALISTS, MOST_PAIRS_PER_FIRST, RATES
@@ -47,7 +48,7 @@ def singles(model: ObservedModel, found: Screening, firsts: Sequence[FirstFit], 
     fits = []
     for count, one in enumerate(firsts):
         report("fits", count, len(firsts))
-        fits.append(fit_mechanisms(model, found.start, (found.candidates[one.number],), one.values, found.excess))
+        fits += _fitted(model, found.start, (found.candidates[one.number],), one.values, found.excess)
     return [fit for fit in refined(model, found.start, fits, found.excess, report) if _is_usable(model, fit)]
 
 
@@ -61,10 +62,13 @@ def refined(
         if not changed:
             break
         fits = [
-            fit_mechanisms(model, start, fit.candidates, fit.values, excess)
-            if any(setting in changed for setting in fit.settings)
-            else fit
+            one
             for fit in fits
+            for one in (
+                _fitted(model, start, fit.candidates, fit.values, excess)
+                if any(setting in changed for setting in fit.settings)
+                else [fit]
+            )
         ]
     return fits
 
@@ -107,8 +111,17 @@ def paired(
     best = lowest(problem, [np.concatenate([first.values, start]) for start in starts], found.rough)
     if best is None:
         return []
-    fit = fit_mechanisms(model, first.system, both, best.values, found.excess)
-    return [one for one in refined(model, first.system, [fit], found.excess, report) if _is_usable(model, one)]
+    fits = _fitted(model, first.system, both, best.values, found.excess)
+    return [one for one in refined(model, first.system, fits, found.excess, report) if _is_usable(model, one)]
+
+
+def _fitted(
+    model: ObservedModel, system: LinearisedSystem, candidates: Sequence[Candidate], start: Floats, excess: float
+) -> list[Fitted]:
+    """The fit, none where a law that turns over gave an answer once and gives none from another start."""
+    with suppress(NoAnswerError):
+        return [fit_mechanisms(model, system, candidates, start, excess)]
+    return []
 
 
 def _is_usable(model: ObservedModel, fit: Fitted) -> bool:

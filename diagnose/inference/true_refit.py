@@ -1,6 +1,7 @@
 """True refits: the named model fitted to some presses and shown on others that it has not seen."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,7 @@ from diagnose.fit.linearised_system import LinearisedSystem, linearise
 from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import fit_mechanisms
-from diagnose.forward import Setting
+from diagnose.forward import NoAnswerError, Setting
 from diagnose.inference.hypotheses import Hypothesis
 from diagnose.inference.screening import Screening
 from foundation.arrays import Bools, Floats
@@ -38,10 +39,10 @@ def trained_and_held(found: Screening, one: Hypothesis, gains: Floats) -> tuple[
     seen = informative & np.isin(samples.press, training)
     settings: tuple[Setting, ...] = ()
     after = before = relaxed(model, found.start.values, (), seen, np.zeros(len(model.nuisances), dtype=bool))
-    if fit is not None:
-        own = fit_mechanisms(model, fit.system.restricted_to(seen), fit.candidates, fit.values, one.form_excess)
-        settings = own.settings
-        after = own.closest_nuisances(model)
+    with suppress(NoAnswerError):  # a law that turns over for half of the presses improves nothing
+        if fit is not None:
+            own = fit_mechanisms(model, fit.system.restricted_to(seen), fit.candidates, fit.values, one.form_excess)
+            settings, after = own.settings, own.closest_nuisances(model)
     runs = {samples.presses[n][0] for n in training}
     frozen = np.array([nuisance.run is None or nuisance.run in runs for nuisance in model.nuisances], dtype=bool)
     unseen = informative & np.isin(samples.press, held)

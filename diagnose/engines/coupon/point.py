@@ -46,6 +46,7 @@ def youngs_modulus_MPa(law: MediumLaw) -> float:
 STRETCH_TOLERANCE = 1e-6  # of the logarithm of the stretch, or of the shear; the iterate behind it errs by the square
 MAX_NEWTON_ITERATIONS = 80  # four or five, unless samples lie at the kink of softening
 MAX_SOFTENING_ROUNDS = 30  # two or three
+DRIVE_SHARES = 0.3, 0.6, 0.85  # on the way to a drive that is too far from small strains for Newton's method
 PULL_STEPS = 10  # to the largest drive of an earlier run
 LARGEST_NEWTON_STEP = 0.3  # of the logarithm of the stretch, or of the shear, in one iteration
 
@@ -84,10 +85,13 @@ class MaterialPoint:
         peak_before : largest energy of the specimen in earlier runs, MPa. NoEquilibriumError.
         """
         test = _CouponRun(self, drive, kind == "displacement_mm", self.relaxation(time_s), peak_before)
-        if near is not None:
-            with suppress(NoEquilibriumError):
-                return test.answer_near(near)
-        return test.answer_near(test.initial_unknowns())
+        for start in (near, test.initial_unknowns()):
+            if start is not None:
+                with suppress(NoEquilibriumError):
+                    return test.answer_near(start)
+        for share in DRIVE_SHARES:
+            start = replace(test, drive=share * drive).answer_near(start).unknown
+        return test.answer_near(start)
 
     def relaxation(self, time_s: Floats) -> Relaxation | FlowingBranches:
         """Relaxation of the point's series at times (t,) in s."""
