@@ -7,6 +7,7 @@ from math import nan
 import numpy as np
 import pytest
 
+from diagnose.fit import trials
 from diagnose.fit.baseline import fit_baseline
 from diagnose.fit.intervals import point_intervals, profile_intervals
 from diagnose.fit.linearised_system import linearise
@@ -34,9 +35,13 @@ class Failing(ToyEngine):
     """
 
     percent = 0
+    fickle = False  # whether the same trial fails at one time and not at another
+    asked = 0
 
     def predict(self, run, settings):
-        number = int.from_bytes(blake2b(repr([(s.candidate.name, s.values) for s in settings]).encode()).digest()[:4])
+        self.asked += self.fickle
+        told = [self.asked, *((s.candidate.name, s.values) for s in settings)]
+        number = int.from_bytes(blake2b(repr(told).encode()).digest()[:4])
         if not settings or number % 100 >= self.percent:
             return super().predict(run, settings)
         if number % 4 < len(FAILURES):
@@ -50,9 +55,9 @@ class Failing(ToyEngine):
         return super().imagine(run, settings)
 
 
-def failing(recording, percent):
+def failing(recording, percent, fickle=False):
     engine = Failing(recording, candidates=FEW)
-    engine.percent = percent
+    engine.percent, engine.fickle = percent, fickle
     return engine
 
 
@@ -74,14 +79,14 @@ def test_whatever_goes_wrong_is_one_exception_and_is_remembered(recording, failu
 
         imagine = predict
 
-    trials, on = Trials(Once(recording), recording.runs), [Setting(LEAK, (0.5,))]
+    engine, on = Trials(Once(recording), recording.runs), [Setting(LEAK, (0.5,))]
     for _ in range(2):
         with pytest.raises(NoAnswerError):
-            trials.predict(0, on)
+            engine.predict(0, on)
     assert len(asked) == 1
-    trials.refine(on, silent)  # after which it may answer
+    engine.refine(on, silent)  # after which it may answer
     with pytest.raises(NoAnswerError):
-        trials.predict(0, on)
+        engine.predict(0, on)
     assert len(asked) == 2
 
 
@@ -147,10 +152,11 @@ def test_a_baseline_without_an_answer_says_so(recording):
 
 
 @pytest.mark.press
-@for_each("percent", [3, 20])
-def test_no_trial_ends_a_diagnosis(percent):
+@for_each("percent, fickle", [(3, False), (20, False), (3, True)])
+def test_no_trial_ends_a_diagnosis(percent, fickle, monkeypatch):
+    monkeypatch.setattr(trials, "MOST_REMEMBERED", 40 if fickle else trials.MOST_REMEMBERED)
     recording = small(7, Sensor(leak=1.0), runs=4, rate=50.0, nuisance=NUISANCE)
-    engine = failing(recording, percent)
+    engine = failing(recording, percent, fickle)
     found = diagnose(recording, engine, 1, silent)
     next_presses(recording, engine, found)
     assert found.mismatch
