@@ -1,8 +1,51 @@
-"""The arguments of the commands on recordings: convert and diagnose."""
+"""The arguments of the commands on what was measured: material, convert and diagnose."""
 
 from typing import Any
 
 from softdot.command_line.options import EXIT_STATUS, add_output, add_scheduler
+
+
+def add_material(commands: Any) -> None:
+    """Add the command softdot material."""
+    material = commands.add_parser(
+        "material",
+        help="fit a material to tensile, compression, shear or relaxation tests",
+        description="Fit the stable laws of the library to tests of a specimen, over the range of strain that a design "
+        "uses, with relaxation from holds and softening from cycles; writes material.toml to include, and a page.",
+        epilog="docs/material.md explains which files are read. " + EXIT_STATUS,
+    )
+    material.add_argument("tests", nargs="+", metavar="TEST", help="files of a testing machine: .csv, .txt, .xlsx")
+    material.add_argument(
+        "--kind", action="append", choices=("tension", "compression", "shear", "planar", "equibiaxial"),
+        help="of every test, or once for each in order; by default tension",
+    )  # fmt: skip
+    for size, what in {
+        "width-mm": "of the specimen", "thickness-mm": "of the specimen",
+        "gauge-length-mm": "by which displacements are divided; of a block or a sheared layer its thickness",
+        "area-mm2": "by which forces are divided",
+    }.items():  # fmt: skip
+        material.add_argument(f"--{size}", type=float, metavar="N", help=f"{what}, in place of what the file states")
+    material.add_argument(
+        "--columns", metavar="NAMES", help='header by hand, such as "time (s),,strain (%%),stress (kPa)"'
+    )
+    material.add_argument(
+        "--strain-range-percent", type=float, default=50.0, metavar="N", help="strains to fit, 0 to N; default 50"
+    )
+    material.add_argument(
+        "--slack-percent", type=float, metavar="N", help="strain before the specimen is loaded; by default fitted"
+    )
+    material.add_argument("--poisson-ratio", type=float, default=0.499, metavar="NU", help="default 0.499")
+    material.add_argument(
+        "--law", choices=("neo-hookean", "mooney-rivlin", "yeoh", "knowles", "fung", "ogden-1", "ogden-2"),
+        help="this law alone; by default the one that predicts best",
+    )  # fmt: skip
+    material.add_argument("--preconditioned", action="store_true", help="fit the last cycle alone")
+    material.add_argument(
+        "--layer", action="append", default=[], choices=("effector", "medium1", "medium2"),
+        help="write relaxation and softening as mechanisms of this layer; may be repeated",
+    )  # fmt: skip
+    material.add_argument("--name", help="of the material; by default that of the folder")
+    add_output(material)
 
 
 def add_convert(commands: Any) -> None:

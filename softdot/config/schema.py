@@ -15,6 +15,12 @@ from solve.materials.parameters import AnyMaterial, Material, PiezoelectricFilm,
 from solve.mechanisms import Mechanism, refuse_repeated
 from solve.model import Press, Readout
 
+INCLUDE_KEY = {
+    "title": "Include", "type": "array", "items": {"type": "string"}, "default": [],
+    "description": "files beside this one whose tables it takes, such as material.toml of softdot material",
+}  # fmt: skip
+"""The key that is gone once a file is read."""
+
 
 class Config(Table):
     """All that a command needs to know. Every number carries its unit in its key."""
@@ -72,4 +78,6 @@ def config_schema() -> dict[str, Any]:
     >>> config_schema()["$defs"]["Press"]["properties"]["load_steps"]["default"]
     6
     """
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Config.model_json_schema()}
+    schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", **Config.model_json_schema()}
+    schema["properties"] = {"include": INCLUDE_KEY, **schema["properties"]}
+    return schema

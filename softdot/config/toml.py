@@ -10,13 +10,47 @@ from typing import Any
 from foundation.errors import InputError
 from foundation.files import read_text
 
+INCLUDE = "include"
+"""Key of the files whose tables a configuration takes."""
 MOST_LEVELS = 100
 """Most levels of a dotted key or of nested brackets: far more than any table of softdot has."""
 
 
 def read_toml(path: Path) -> dict[str, Any]:
-    """The tables of a TOML file. InputError when it is missing, unreadable, not UTF-8 or not TOML."""
-    return parse_toml(read_text(path, f"configuration '{path}'"), str(path))
+    """The tables of a TOML file and of those that it includes.
+
+    InputError when one is missing, unreadable, not UTF-8 or not TOML.
+    """
+    tables = parse_toml(read_text(path, f"configuration '{path}'"), str(path))
+    return with_included(tables, path) if INCLUDE in tables else tables
+
+
+def with_included(tables: Mapping[str, Any], path: Path) -> dict[str, Any]:
+    """Tables of a file with those of the files that it includes, its own values before theirs, lists joined.
+
+    InputError for anything but a list of files beside it, and for one that includes others.
+    """
+    names = tables[INCLUDE]
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        raise InputError(f"{INCLUDE} = {names!r}: must be a list of files, such as ['material.toml']")
+    whole = {key: value for key, value in tables.items() if key != INCLUDE}
+    for name in reversed(names):
+        other = parse_toml(read_text(path.parent / name, f"{INCLUDE}: '{name}'"), name)
+        if INCLUDE in other:
+            raise InputError(f"{INCLUDE}: '{name}' includes other files itself; name them in '{path}'")
+        whole = _merged(other, whole)
+    return whole
+
+
+def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
+    """Tables of both, values of above before those of below, lists of tables joined."""
+    both = {**below, **above}
+    for key in below.keys() & above.keys():
+        if isinstance(below[key], dict) and isinstance(above[key], dict):
+            both[key] = _merged(below[key], above[key])
+        elif isinstance(below[key], list) and isinstance(above[key], list) and key == "mechanisms":
+            both[key] = [*above[key], *below[key]]
+    return both
 
 
 def parse_toml(text: str, name: str) -> dict[str, Any]:

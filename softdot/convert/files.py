@@ -10,8 +10,8 @@ from foundation.arrays import Floats
 from foundation.errors import InputError
 from foundation.files import regular_file_size
 from softdot.convert.apart import read_in_own_process
-from softdot.convert.instruments import InstrumentLog, LogChannel, first_not_rising, log_from_table, read_text_log
-from softdot.convert.text_table import TextTable
+from softdot.convert.instruments import InstrumentLog, LogChannel, first_not_rising, log_from_table
+from softdot.convert.text_table import TextTable, read_text_table
 from softdot.convert.units import assumed_unit, unit_of
 
 TEXT_ENDINGS = (".csv", ".txt", ".tsv", ".dat", ".asc", ".prn")
@@ -22,10 +22,8 @@ def read_log(file: Path | str) -> InstrumentLog:
     """Read the log of an instrument, in the format that its ending names. InputError."""
     file = Path(file)
     kind = file.suffix.lower()
-    if kind in TEXT_ENDINGS:
-        return read_text_log(file)
-    if kind == ".xlsx":
-        return log_from_table(TextTable(_cell_texts(file, 0, 0), ".", file))
+    if kind in TEXT_ENDINGS or kind == ".xlsx":
+        return log_from_table(read_table(file))
     if kind in (".tdms", ".lvm"):
         return _binary_log(file, kind)
     if kind in WAVEFORM_ENDINGS:
@@ -36,6 +34,13 @@ def read_log(file: Path | str) -> InstrumentLog:
         )
     known = ", ".join((*TEXT_ENDINGS, ".xlsx", ".tdms", ".lvm", *WAVEFORM_ENDINGS))
     raise InputError(f"'{file}': must end with one of {known}; text with other endings may be renamed")
+
+
+def read_table(file: Path) -> TextTable:
+    """The table in a text file or in the first sheet of a workbook. InputError."""
+    if file.suffix.lower() == ".xlsx":
+        return TextTable(_cell_texts(file, 0, 0), ".", file)
+    return read_text_table(file)
 
 
 def _binary_log(file: Path, kind: str) -> InstrumentLog:

@@ -67,6 +67,8 @@ def test_every_table_of_the_schema_has_its_section():
 def test_every_example_is_allowed(table):
     model = Config if table == "Config" else next(getattr(h, table) for h in HOMES if hasattr(h, table))
     for key, value in EXAMPLES[table].items():
+        if key == "include":  # gone once a file is read
+            continue
         adapter = TypeAdapter(model.model_fields[key].rebuild_annotation())
         adapter.validate_json(json.dumps(value), strict=True)
 

@@ -136,8 +136,9 @@ def material_point(specimen: Specimen, model: Model) -> MaterialPoint:
     physics, material = model.physics, model.materials[LAYER]
     thickness = model.segment.medium1.thickness_mm
     ratio = material.poisson_ratio
+    built = specimen.model_copy(update={"thickness_mm": thickness})
     return MaterialPoint(
-        coupon_kinematics(specimen.model_copy(update={"thickness_mm": thickness})),
+        coupon_kinematics(built.kind, built.gauge_mm, built.area_mm2),
         material.law,
         float(np.mean(ratio)),
         laws_of(physics.inelastic, Softening).get(LAYER),

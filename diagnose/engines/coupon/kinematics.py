@@ -1,18 +1,19 @@
 """Homogeneous deformations of a coupon, and what a tester reads of them.
 
 With the second Piola-Kirchhoff stress T = S + p J C^-1, p = K (J - 1) (S the whole stress and p = 0 for a foam):
-    tension, compression : F = diag(l, m, m), nominal stress l T11, lateral faces free: T22 = 0; unknown ln l, ln J
+    tension, compression : F = diag(l, m, m), nominal stress l T11, lateral faces free: T33 = 0; unknown ln l, ln J
+    planar, equibiaxial  : F = diag(l, 1, J / l) and diag(l, l, J / l^2), as before
     shear                : F = 1 + g e1 x e2 between plates at a fixed distance: J = 1, p without effect on the
                            nominal shear stress S12 + g S22; unknown g
 (Holzapfel, Nonlinear Solid Mechanics, 2000, chapters 3 and 6.)
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
 import numpy as np
 
-from diagnose.signals.recording import Specimen
 from foundation.arrays import Floats
 
 
@@ -66,13 +67,15 @@ class Kinematics(Protocol):
 
 
 @dataclass(frozen=True)
-class Uniaxial:
-    """Tension or compression with free sides.
+class Stretching:
+    """Principal stretches along fixed axes, of which the third is free of stress.
 
-    sign : 1 in tension, -1 in compression; travel and force are positive in both.
+    log_stretches : logarithms of the three stretches by ln l and ln J. sign : -1 in compression, where travel and force
+    are positive too, else 1.
     """
 
-    lateral: ClassVar[float] = 0.5
+    lateral: ClassVar[float]
+    log_stretches: ClassVar[tuple[tuple[float, float], ...]]
     sign: float
     length_mm: float
     area_mm2: float
@@ -86,29 +89,31 @@ class Uniaxial:
         """Stretch l along the load."""
         return float(np.exp(unknown[0]))
 
+    def _squares(self, unknown: Floats) -> Floats:
+        """Squares (t, 3) of the principal stretches."""
+        return np.asarray(np.exp(2.0 * unknown @ np.array(self.log_stretches).T))
+
     def cauchy_green(self, unknown: Floats) -> Floats:
-        """Tensor C = diag(l^2, m^2, m^2), m^2 = J / l."""
+        """Tensor C (t, 3, 3), diagonal."""
         c = np.zeros((len(unknown), 3, 3))
-        c[:, 0, 0] = np.exp(2.0 * unknown[:, 0])
-        c[:, 1, 1] = c[:, 2, 2] = np.exp(unknown[:, 1] - unknown[:, 0])
+        c[:, range(3), range(3)] = self._squares(unknown)
         return c
 
     def strain_derivatives(self, unknown: Floats) -> Floats:
-        """Derivatives dE11 = l^2 d ln l, dE22 = dE33 = m^2 (d ln J - d ln l) / 2."""
-        rates, across = np.zeros((len(unknown), 6, 2)), np.exp(unknown[:, 1] - unknown[:, 0])
-        rates[:, 0, 0] = np.exp(2.0 * unknown[:, 0])
-        rates[:, 1:3, 0], rates[:, 1:3, 1] = -0.5 * across[:, None], 0.5 * across[:, None]
+        """Derivatives dE = l^2 d ln l (t, 6, 2) of each principal stretch."""
+        rates = np.zeros((len(unknown), 6, 2))
+        rates[:, :3] = self._squares(unknown)[:, :, None] * np.array(self.log_stretches)
         return rates
 
     def tester_reading(self, unknown: Floats, stress: Floats, bulk_modulus: float) -> TesterReading:
-        """Nominal stress l S11 + p J / l and lateral stress m^2 S22 + p J (Kirchhoff's), p = K (J - 1), as read."""
+        """Nominal stress l S11 + p J / l and free stress l3^2 S33 + p J (Kirchhoff's), p = K (J - 1), as read."""
         count, along, jacobian = len(unknown), np.exp(unknown[:, 0]), np.exp(unknown[:, 1])
-        across_2 = jacobian / along
+        across_2, by = self._squares(unknown)[:, 2], self.log_stretches[2]
         volumetric = bulk_modulus * (jacobian - 1.0) * jacobian
         volumetric_by = bulk_modulus * (2.0 * jacobian - 1.0) * jacobian
         force_stress, lateral_stress = np.zeros((count, 6)), np.zeros((count, 1, 6))
-        force_stress[:, 0], lateral_stress[:, 0, 1] = along, across_2
-        lateral = across_2 * stress[:, 1]
+        force_stress[:, 0], lateral_stress[:, 0, 2] = along, across_2
+        lateral = across_2 * stress[:, 2]
         factor = self.sign * self.area_mm2
         return TesterReading(
             force=factor * (along * stress[:, 0] + volumetric / along),
@@ -118,8 +123,29 @@ class Uniaxial:
             travel_unknown=np.column_stack([self.sign * self.length_mm * along, np.zeros(count)]),
             lateral=(lateral + volumetric)[:, None],
             lateral_stress=lateral_stress,
-            lateral_unknown=np.column_stack([-lateral, lateral + volumetric_by])[:, None, :],
+            lateral_unknown=np.column_stack([2.0 * by[0] * lateral, 2.0 * by[1] * lateral + volumetric_by])[:, None, :],
         )
+
+
+class Uniaxial(Stretching):
+    """Tension or compression with free sides."""
+
+    lateral: ClassVar[float] = 0.5
+    log_stretches = (1.0, 0.0), (-0.5, 0.5), (-0.5, 0.5)
+
+
+class Planar(Stretching):
+    """Tension of a sheet so wide that its width is kept, which is pure shear."""
+
+    lateral: ClassVar[float] = 1.0
+    log_stretches = (1.0, 0.0), (0.0, 0.0), (-1.0, 1.0)
+
+
+class Equibiaxial(Stretching):
+    """Tension of a sheet that is as large along both of its axes."""
+
+    lateral: ClassVar[float] = 2.0
+    log_stretches = (1.0, 0.0), (1.0, 0.0), (-2.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -168,8 +194,13 @@ class SimpleShear:
         )
 
 
-def coupon_kinematics(specimen: Specimen) -> Kinematics:
-    """Kinematics of a coupon by its kind."""
-    if specimen.kind == "shear":
-        return SimpleShear(specimen.gauge_mm, specimen.area_mm2)
-    return Uniaxial(1.0 if specimen.kind == "tension" else -1.0, specimen.gauge_mm, specimen.area_mm2)
+STRETCHINGS: Mapping[str, type[Stretching]] = {
+    "tension": Uniaxial, "compression": Uniaxial, "planar": Planar, "equibiaxial": Equibiaxial
+}  # fmt: skip
+
+
+def coupon_kinematics(kind: str, length_mm: float, area_mm2: float) -> Kinematics:
+    """Kinematics of a coupon by its kind: shear, or one of STRETCHINGS."""
+    if kind == "shear":
+        return SimpleShear(length_mm, area_mm2)
+    return STRETCHINGS[kind](-1.0 if kind == "compression" else 1.0, length_mm, area_mm2)

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import erf
 
-from diagnose.engines.coupon.kinematics import SimpleShear, Uniaxial
+from diagnose.engines.coupon.kinematics import Equibiaxial, Planar, SimpleShear, Uniaxial
 from diagnose.engines.coupon.point import MaterialPoint
 from diagnose.engines.coupon.relaxation import NO_SERIES
 from solve.materials.hyperfoam import HyperfoamLaw
@@ -35,12 +35,20 @@ def yeoh_slope(excess):
     return C10 + 2.0 * C20 * excess + 3.0 * C30 * excess**2
 
 
-@for_each(("kinematics", "stretch"), [(TENSION, 1.0 + TIME / 5.0), (COMPRESSION, 1.0 - TIME / 20.0)])
-def test_incompressible_yeoh_along_a_strip_and_through_a_block(kinematics, stretch):
-    """P = 2 (l - l^-2) dW/dI1 (Treloar, The Physics of Rubber Elasticity)."""
+@for_each(
+    ("kinematics", "stretch", "across"),
+    [
+        (TENSION, 1.0 + TIME / 5.0, (-0.5, -0.5)),
+        (COMPRESSION, 1.0 - TIME / 20.0, (-0.5, -0.5)),
+        (Planar(1.0, LENGTH, AREA), 1.0 + TIME / 5.0, (0.0, -1.0)),
+        (Equibiaxial(1.0, LENGTH, AREA), 1.0 + TIME / 10.0, (1.0, -2.0)),
+    ],
+)
+def test_incompressible_yeoh_along_a_strip_a_sheet_and_through_a_block(kinematics, stretch, across):
+    """P = 2 (l - l3^2 / l) dW/dI1, the third stretch being free (Treloar, The Physics of Rubber Elasticity)."""
     travel = LENGTH * np.abs(stretch - 1.0)
-    excess = stretch**2 + 2.0 / stretch - 3.0
-    expected = AREA * np.abs(2.0 * (stretch - stretch**-2) * yeoh_slope(excess))
+    excess = stretch**2 + sum(stretch ** (2.0 * power) for power in across) - 3.0
+    expected = AREA * np.abs(2.0 * (stretch - stretch ** (2.0 * across[1] - 1.0)) * yeoh_slope(excess))
     np.testing.assert_allclose(force(kinematics, YEOH, travel), expected, rtol=1e-5, atol=1e-6)
 
 

@@ -1,0 +1,1 @@
+"""A law for a configuration from the tests of a specimen, with its relaxation and its softening."""
