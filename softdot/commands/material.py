@@ -43,9 +43,10 @@ def short_text(summary: dict[str, Any], output: str) -> str:
     ranking = ", ".join(f"{one['name']} {100 * one['held_out_error']:.2g} %" for one in summary["laws"][:4])
     memory = " and ".join(one["name"] for one in summary["mechanisms"])
     law = f"{summary['law']} with {memory}" if memory else summary["law"]
+    whole = "the whole test" if memory else "first loading"
+    reached = f"up to {100 * summary['reached_strain']:.3g} % of strain; beyond, it is an extrapolation"
     lines = [
-        f"{law}: misses {100 * summary['error']:.2g} % of the stress of "
-        f"{'the whole test' if memory else 'first loading'} up to {100 * summary['reached_strain']:.3g} % of strain; beyond, it is an extrapolation",
+        f"{law}: misses {100 * summary['error']:.2g} % of the stress of {whole} {reached}",
         f"without memory, on strains that were left out: {ranking}",
     ]
     return "\n".join([*lines, f"{output}/material.toml, {output}/material.html"])
