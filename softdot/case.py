@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from foundation.errors import InputError
+from geometry.stack import layers
 from softdot.config.default_design import with_default_design
 from softdot.config.loading import config_from, load_config
 from softdot.config.model import refuse_array
@@ -52,6 +53,24 @@ class Case(PreparedPress):
         if config is not None and tables:
             raise TypeError("give either a configuration or its tables")
         super().__init__(config if config is not None else config_from(with_default_design(tables)))
+
+    def __repr__(self) -> str:
+        """Size, layers from below and dot in a line.
+
+        >>> Case(press={"indentation_mm": 0.2})
+        Case(2.5 x 2.5 mm; medium2 2 mm vnr-soft, film 28 um pvdf, medium1 0.5 mm vnr, effector 1 mm rubber; cap)
+        """
+        segment, dot = self.config.segment, self.config.dot
+        made = [
+            f"{one.name} {1e3 * one.thickness_mm:.4g} um {one.material}"
+            if one.name == "film"
+            else f"{one.name} {one.thickness_mm:.4g} mm {one.material}"
+            for one in layers(segment)
+        ]
+        array = (
+            "" if self.config.array is None else f"array of {self.config.array.rows} x {self.config.array.columns}, "
+        )
+        return f"Case({array}{segment.length_mm:g} x {segment.width_mm:g} mm; {', '.join(made)}; {dot.shape})"
 
     @classmethod
     def load(cls, path: Path | str | None = None, settings: Sequence[str] = ()) -> "Case":

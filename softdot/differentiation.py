@@ -20,7 +20,11 @@ if TYPE_CHECKING:
 RELATIVE_STEP = 1e-4
 
 
-@dataclass(frozen=True)
+UNITS_OF_KEYS = {"mm", "um", "mm3", "MPa", "N", "V", "s", "pF", "MOhm", "Hz", "deg", "m3", "h", "g", "K"}
+"""Endings of keys that are units."""
+
+
+@dataclass(frozen=True, repr=False)
 class Derivative:
     """Derivatives d(quantity)/d(key), in the quantity's unit over the key's own; (t,) over the times of the press.
 
@@ -34,6 +38,24 @@ class Derivative:
     film_charge_pC: Floats
     open_circuit_voltage_V: Floats
     readout_voltage_V: Floats | None
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of each quantity's derivative, such as N/mm for a force by a thickness in mm."""
+        ending = self.key.rpartition("_")[2]
+        below = f"/{ending}" if ending in UNITS_OF_KEYS else ""
+        named = {
+            "reaction_force_N": "N",
+            "film_charge_pC": "pC",
+            "open_circuit_voltage_V": "V",
+            "readout_voltage_V": "V",
+        }
+        return {name: f"{unit}{below}" for name, unit in named.items() if getattr(self, name) is not None}
+
+    def __repr__(self) -> str:
+        """The derivatives at the last time, with their units."""
+        last = (f"{name} {getattr(self, name)[-1]:.4g} {unit}" for name, unit in self.units.items())
+        return f"Derivative(by {self.key} at {self.value:g}: {', '.join(last)})"
 
 
 def derivatives_of_press(config: Config, keys: Sequence[str], tet_mesh: TetMesh) -> list[Derivative]:

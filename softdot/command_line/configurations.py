@@ -33,6 +33,7 @@ def add_new(commands: Any) -> None:
         epilog="softdot new --template dome > mine.toml",
     )
     new.add_argument("--template", choices=TEMPLATES, default="default", help="what to start from")
+    new.add_argument("--short", action="store_true", help="only the keys that the template states")
 
 
 def add_list(commands: Any) -> None:

@@ -1,7 +1,7 @@
 """softdot new: a configuration to start from, in which every key of the schema is explained in words.
 
-What a template states stands there as it is; every other key is a comment with its default. The text is made from the
-schema, so it cannot name a key that is gone or leave a new one out.
+What a template states stands there as it is; every other key is a comment with its default, or left out in short. The
+text is made from the schema, so it cannot name a key that is gone or leave a new one out.
 """
 
 import json
@@ -109,13 +109,13 @@ MATERIALS_TEXT = """\
 
 
 def command(chosen: Namespace) -> int:
-    """Print the configuration of chosen.template; 0."""
-    sys.stdout.write(template_text(chosen.template))
+    """Print the configuration of chosen.template, in short if chosen.short; 0."""
+    sys.stdout.write(template_text(chosen.template, chosen.short))
     return GOOD
 
 
-def template_text(name: str) -> str:
-    """The text of a whole configuration file made from a template."""
+def template_text(name: str, short: bool = False) -> str:
+    """The text of a whole configuration file made from a template. short : with the keys alone that it states."""
     from softdot.config.default_design import default_design
     from softdot.config.toml import parse_toml
 
@@ -128,6 +128,12 @@ def template_text(name: str) -> str:
     definitions = {**schema["$defs"], "Config": schema}
     head = [text.split("\n")[0], f"# Made by softdot new --template {name}; a key without # is stated, others show"]
     head[1] += " their default."
+    if short:
+        tables = [
+            _short_table(title, definitions[kind], _stated_table(values, title)) for title, kind in TABLES.items()
+        ]
+        head[1] = f"# Made by softdot new --short --template {name}; without --short every other key is explained."
+        return "\n\n".join(["\n".join(head), *(one for one in tables if one)]) + "\n"
     parts = ["\n".join(head)]
     parts += [_table(title, definitions[kind], _stated_table(values, title)) for title, kind in TABLES.items()]
     return "\n\n".join([*parts, MATERIALS_TEXT]) + "\n"
@@ -171,6 +177,21 @@ def _table(title: str, definition: JsonTable, values: Mapping[str, Any] | None) 
         )
         lines.append(f"{'' if stated else '# '}{key} = {shown}")
     return "\n".join(lines)
+
+
+def _short_table(title: str, definition: JsonTable, values: Mapping[str, Any] | None) -> str:
+    """The stated keys of a table, each with its meaning behind it; "" where the template states none."""
+    properties = definition["properties"]
+    stated = {
+        key: value for key, value in (values or {}).items() if key in properties and not _is_table(properties[key])
+    }
+    if not stated:
+        return ""
+    lines = {f"{key} = {toml_value(value)}": properties[key].get("description", "") for key, value in stated.items()}
+    width = max(map(len, lines))
+    return "\n".join(
+        [*([f"[{title}]"] if title else []), *(f"{line:<{width}}  # {said}" for line, said in lines.items())]
+    )
 
 
 def _key_remark(key: str, value: JsonTable, required: bool) -> str:

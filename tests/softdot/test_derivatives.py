@@ -34,6 +34,9 @@ def test_voltage_follows_d_and_the_circuit():
     assert value_of(scaled, "readout.input_capacitance_pF") == 100.001
     assert total[-1] > 0.0
     assert found[keys[3]].readout_voltage_V[-1] < 0.0 < found[keys[4]].readout_voltage_V[-1]
+    assert found[keys[3]].units["readout_voltage_V"] == "V/pF"
+    assert "film_charge_pC" in repr(found[keys[4]])
+    assert "pC/MOhm" in repr(found[keys[4]])
     open_circuit = sum(found[key].value * found[key].open_circuit_voltage_V for key in film)
     charge = sum(found[key].value * found[key].film_charge_pC for key in film)
     np.testing.assert_allclose(open_circuit[1:], charge[1:] / 23.716, rtol=1e-3)  # eps A / t in pF

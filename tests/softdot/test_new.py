@@ -28,6 +28,14 @@ def test_the_default_template_is_the_default_design():
     assert config_hash(config_from(tomllib.loads(template_text("default")))) == config_hash(load_config())
 
 
+@for_each("name", TEMPLATES)
+def test_in_short_it_is_the_same_design(name):
+    whole, short = (template_text(name, short) for short in (False, True))
+    assert config_hash(config_from(tomllib.loads(short))) == config_hash(config_from(tomllib.loads(whole)))
+    assert len(short.splitlines()) < 60
+    assert all("#" in line for line in short.splitlines() if " = " in line)
+
+
 def test_each_template_is_another_design():
     assert len({config_hash(config_from(tomllib.loads(template_text(name)))) for name in TEMPLATES}) == len(TEMPLATES)
 
