@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+SMALL_STRAIN, SMALL_DENSITY_PC_PER_MM2 = 1e-3, 0.1
+
+
 @dataclass(frozen=True)
 class FilmMap:
     """Film values, means through the thickness, at the nodes of its upper face.
@@ -100,12 +103,24 @@ def film_figure(tet_mesh: TetMesh, step: Step, peak: FilmPeak) -> "Figure":
     figure.suptitle(title, x=0.04, ha="left", fontsize=15, fontweight="bold", color=INK)
     left, right = figure.subplots(1, 2)
     draw = _draw_line if is_slice(tet_mesh) else _draw_map
-    strain = Scale("largest principal strain (%)", 0.0, 100 * peak.strain, COLOUR_MAP)
-    draw(figure, left, shown, shown.strain_percent, strain)
-    low, high = (PC_PER_MM2_PER_C_PER_M2 * density for density in peak.charge_density_C_per_m2)
-    most = max(abs(low), abs(high))
-    draw(figure, right, shown, shown.charge_pC_per_mm2, Scale("charge density (pC/mm²)", -most, most, DIVERGING))
+    factor, unit = strain_unit(peak.strain)
+    strain = Scale(f"largest principal strain ({unit})", 0.0, factor * peak.strain, COLOUR_MAP)
+    draw(figure, left, shown, 0.01 * factor * shown.strain_percent, strain)
+    most = PC_PER_MM2_PER_C_PER_M2 * max(abs(density) for density in peak.charge_density_C_per_m2)
+    factor, unit = (1e3, "fC/mm²") if most < SMALL_DENSITY_PC_PER_MM2 else (1.0, "pC/mm²")
+    most *= factor
+    charge = Scale(f"charge density ({unit})", -most, most, DIVERGING)
+    draw(figure, right, shown, factor * shown.charge_pC_per_mm2, charge)
     return figure
+
+
+def strain_unit(strain: float) -> tuple[float, str]:
+    """Factor and unit in which a strain is easily read.
+
+    >>> strain_unit(0.02), strain_unit(9e-6)
+    ((100.0, '%'), (1000000.0, 'µm/m'))
+    """
+    return (1e6, "µm/m") if abs(strain) < SMALL_STRAIN else (100.0, "%")
 
 
 def _draw_map(figure: Any, axes: Any, shown: FilmMap, values: Floats, scale: Scale) -> None:
@@ -154,4 +169,5 @@ def _draw_line(_figure: Any, axes: Any, shown: FilmMap, values: Floats, scale: S
     axes.set_ylabel(scale.label, fontsize=12)
     axes.set_ylim(1.05 * scale.low, 1.05 * scale.top)
     axes.grid(alpha=0.3)
+    axes.locator_params(nbins=5)
     axes.tick_params(labelsize=11)

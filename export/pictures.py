@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from export.course_figure import course_figure
+from export.course_figure import course_figure, voltage_unit
 from export.cutaway import draw_parts, draw_von_mises, open_scene
 from export.film_maps import film_figure
 from export.skin import MM_PER_M
@@ -45,7 +45,7 @@ def draw_curves(
     force, voltage = figure.subplots(1, 2)
     force.plot(x, reaction_force_N, "o-", color="#33658a", lw=1.8, ms=4)
     _label_axes(force, below, "reaction force (N)")
-    scale, unit = _voltage_unit(open_circuit_voltage_V)
+    scale, unit = voltage_unit(open_circuit_voltage_V)
     lines = voltage.plot(
         x, scale * open_circuit_voltage_V, "o-", color=OPEN_CIRCUIT_COLOUR, lw=1.8, ms=4, label="open circuit"
     )
@@ -61,20 +61,16 @@ def _plot_readout(axes: Any, x: Floats, open_V: Floats, readout_V: Floats) -> li
 
     It has a scale of its own where it would else look like zero.
     """
-    scale, unit = _voltage_unit(open_V)
+    scale, unit = voltage_unit(open_V)
     label = "read-out"
     if np.abs(readout_V).max() < 0.1 * np.abs(open_V).max():
         axes = axes.twinx()
-        scale, unit = _voltage_unit(readout_V)
+        scale, unit = voltage_unit(readout_V)
         axes.set_ylabel(f"read-out voltage ({unit})", fontsize=12, color=READOUT_COLOUR)
         axes.tick_params(labelsize=11, colors=READOUT_COLOUR)
         axes.spines["top"].set_visible(False)
         label += " (right)"
     return list(axes.plot(x, scale * readout_V, "s--", color=READOUT_COLOUR, lw=1.6, ms=4, label=label))
-
-
-def _voltage_unit(voltage_V: Floats) -> tuple[float, str]:
-    return (1e3, "mV") if np.abs(voltage_V).max() < 1.0 else (1.0, "V")
 
 
 def _label_axes(axes: Any, below: str, label: str) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from export.film_maps import strain_unit
 from export.page import page_environment, script_safe
 from foundation.files import write_whole_text
 
@@ -132,7 +133,7 @@ def headline(summary: Mapping[str, Any]) -> list[dict[str, str]]:
         ("Voltage per depth", sensitivity.get("voltage_per_mm"), "V/mm", "at the deepest step" + at),
         ("Charge per force", sensitivity.get("charge_pC_per_N"), "pC/N", "at the deepest step"),
         ("Least detectable press", sensitivity.get("least_detectable_indentation_um"), "µm", at_noise),
-        ("Largest film strain", _percent(film.get("max_principal_strain")), "%", f"principal, {where}"),
+        ("Largest film strain", *_strain(film.get("max_principal_strain")), f"principal, {where}"),
         ("Largest film stress", film.get("max_principal_stress_MPa"), "MPa", f"principal, {where}"),
         *_rim_rows(film),
     ]
@@ -178,7 +179,7 @@ def _rim_rows(film: Mapping[str, Any]) -> list[tuple[str, Any, str, str]]:
     if not film.get("rim_distance_mm"):
         return []
     about = "the mesh does not resolve the film there, so do not compare it with a material constant"
-    return [("Film strain, held sides included", _percent(film.get("rim_principal_strain")), "%", about)]
+    return [("Film strain, held sides included", *_strain(film.get("rim_principal_strain")), about)]
 
 
 def step_rows(summary: Mapping[str, Any]) -> tuple[list[str], list[list[str]]]:
@@ -201,8 +202,10 @@ def _last_value(summary: Mapping[str, Any], key: str) -> Any:
     return history[-1] if history else None
 
 
-def _percent(share: float | None) -> float | None:
-    return None if share is None else 100 * share
+def _strain(strain: float | None) -> tuple[float | None, str]:
+    """Strain in the unit in which it is easily read, and that unit."""
+    factor, unit = strain_unit(strain or 1.0)
+    return None if strain is None else factor * strain, unit
 
 
 def _ordered_pictures(pictures: Mapping[str, Path]) -> list[tuple[str, Path]]:
