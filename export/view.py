@@ -135,10 +135,9 @@ def picture_page(box: tuple[float, float, float, float], title: str) -> tuple[An
     return figure, axes, inch_per_mm * DPI
 
 
-def save_png(figure: Any, path: Any, cropped: bool = False) -> None:
-    """Write a PNG of the figure's full size, or cropped to what is drawn."""
-    box = {"bbox_inches": "tight", "pad_inches": 0.15} if cropped else {}
-    figure.savefig(path, dpi=DPI, facecolor="white", pil_kwargs={"compress_level": 3}, **box)  # half the time of 6
+def save_png(figure: Any, path: Any) -> None:
+    """Write a PNG of the figure's full size."""
+    figure.savefig(path, dpi=DPI, facecolor="white", pil_kwargs={"compress_level": 3})  # half the time of the usual 6
 
 
 def draw_ruler(axes: Any, view: View, start_mm: Floats, end_mm: Floats, name: str, away: Floats) -> None:

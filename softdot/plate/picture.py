@@ -29,7 +29,7 @@ def draw_plate(built: BuiltPlate, path: Path) -> None:
         middle, below = (box[0] + box[1]) / 2, box[2] - 0.03 * (box[1] - box[0])
         axes.text(middle, below, cells, fontsize=14, color=INK, ha="center", va="top", multialignment="left")
     _write_sizes(figure, built)
-    save_png(figure, path, cropped=True)
+    save_png(figure, path)
 
 
 def _title(built: BuiltPlate) -> str:
