@@ -15,7 +15,7 @@ from softdot.version import installed_version
 if TYPE_CHECKING:
     from argparse import Namespace
 
-LEARNED = Product("softdot-learned-kernel/1", "kernel.json", frozenset({"kernel.json", "kernel.npz"}))
+LEARNED = Product("softdot-learned-kernel/2", "kernel.json", frozenset({"kernel.json", "kernel.npz"}))
 TOUCHES = Product("softdot-touches/1", "cells.json", frozenset({"cells.json", "cells.csv", "cells.npz"}))
 OF_EVERY_COMMAND = {"command", "output", "json", "quiet", "verbose"}
 

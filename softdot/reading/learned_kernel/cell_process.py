@@ -1,7 +1,7 @@
-"""A Gaussian process over the 64 cells: what one axis of a touch is expected to be for each of them.
+"""A Gaussian process over the 64 cells and the lateral places: what one axis of a touch is expected to be for each.
 
-Its covariance is that of a constant, of one independent part for each raised dot, and of a part that is alike in cells
-which differ by few dots. The first two are superposition; the third is what superposition misses.
+Its covariance over cells is that of a constant, of one independent part for each raised dot, and of a part that is alike
+in cells which differ by few dots; all of them are alike at places that are near.
 """
 
 from dataclasses import dataclass
@@ -17,19 +17,18 @@ LIKENESS_DOTS, LOAD_EXPONENT = 1.5, 0.25
 """Number of dots over which likeness falls by e; an answer to n dots falls as n to the minus exponent, as they share
 the load.
 """
-USUAL_SHARES, PULL = (0.3, 0.3, 0.5), 0.1
-"""Variance of each part over that of the axis where touches do not tell, and how strongly (in logarithms, as 1 over a
-variance) they are held there.
+USUAL_SHARES, PULL, MOST_STEPS = (0.3, 0.3, 0.5), 0.1, 8
+"""Variance of each part over that of the axis where touches do not tell, how strongly (in logarithms, as 1 over a
+variance) they are held there, and steps in which the largest evidence is sought.
 """
 
 
 @dataclass(frozen=True)
-class ExpectedCells:
-    """Mean and variance (64,) of the mean touch of each cell along one axis, and the mean by superposition alone."""
+class Expected:
+    """Mean and variance (64, p) of the mean touch of each cell at each place along one axis."""
 
     mean: Floats
     variance: Floats
-    dot_mean: Floats
 
 
 def parts_of_covariance() -> Floats:
@@ -47,25 +46,27 @@ def load_shares(cells: Ints) -> Floats:
     return np.asarray(np.maximum(count, 1.0) ** -LOAD_EXPONENT)
 
 
-def expect_cells(parts: Floats, cells: Ints, means: Floats, noise: Floats) -> ExpectedCells:
-    """What is expected of all cells, after means (k,) of some cells (k,) whose variance of scatter is noise (k,).
+def expect_cells(parts: Floats, alike: Floats, states: Ints, means: Floats, noise: Floats) -> Expected:
+    """What is expected of all cells at all places, after means (m,) with a variance of noise (m,) at some states (m,).
 
-    parts : those of the covariance. Their variances are those of the largest evidence.
+    parts : those of the covariance over cells, whose variances are those of the largest evidence. alike (p, p) :
+    likeness of places. A state is the number of a cell times p, and that of a place.
     """
-    among = parts[:, cells][:, :, cells]
-    size = float(means.var()) + 1e-12
+    cells, places = np.divmod(states, len(alike))
+    among = parts[:, cells][:, :, cells] * alike[places][:, places]
+    size = float((means**2).mean()) + 1e-12
     start = np.log(USUAL_SHARES)
     found = minimize(
         _negative_evidence, start, (among, means, noise, size, start), jac=True, method="L-BFGS-B",
-        bounds=[(-10.0, 5.0)] * len(start), options={"maxiter": 40},
+        bounds=[(-10.0, 5.0)] * len(start), options={"maxiter": MOST_STEPS},
     )  # fmt: skip
     variances = np.exp(found.x) * size
     factor = cho_factor(np.tensordot(variances, among, 1) + np.diag(noise + 1e-9 * size))
-    to_all = variances[:, None, None] * parts[:, :, cells]
-    weights = cho_solve(factor, means)
-    known = to_all.sum(axis=0)
-    variance = np.diagonal(np.tensordot(variances, parts, 1)) - np.einsum("ij,ji->i", known, cho_solve(factor, known.T))
-    return ExpectedCells(known @ weights, np.maximum(variance, 1e-12), (to_all[0] + to_all[1]) @ weights)
+    whole = np.tensordot(variances, parts, 1)
+    known = np.kron(whole[:, cells], np.ones((len(alike), 1))) * np.tile(alike[:, places], (KINDS_OF_CELL, 1))
+    variance = np.repeat(np.diag(whole), len(alike)) - (known * cho_solve(factor, known.T).T).sum(axis=1)
+    shape = (KINDS_OF_CELL, len(alike))
+    return Expected((known @ cho_solve(factor, means)).reshape(shape), np.maximum(variance, 1e-12).reshape(shape))
 
 
 def _negative_evidence(

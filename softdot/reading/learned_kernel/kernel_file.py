@@ -11,7 +11,7 @@ from foundation.arrays import Floats, Ints
 from foundation.errors import InputError
 from foundation.table_checksum import table_checksum
 
-FORMAT = "softdot-learned-kernel/1"
+FORMAT = "softdot-learned-kernel/2"
 NPZ, JSON, CHECKSUM = "kernel.npz", "kernel.json", "checksum_sha256"
 AGAIN = "learn it again by softdot read --learn"
 TABLES = ("centre", "weight", "axes", "mean", "dot_mean", "variance", "scatter", "shift_steps")
@@ -22,9 +22,9 @@ class LearnedKernel:
     """What touches of each of the 64 cells are like, along d axes of all that c channels do at t steps of a touch.
 
     centre (t, c) : mean of the learned touches; weight (c,) : by which each channel is multiplied, 0 where it is dead.
-    axes (t, c, d). mean (64, d) and variance (64, d) : of the mean touch of each cell, dot_mean (64, d) the mean by the
-    courses of its dots alone; scatter (64, d, d) : covariance of touches of one cell. shift_steps (s,) : shifts over
-    which scores are summed. about : the rest.
+    axes (t, c, d). mean and variance (64, p, d) : of the mean touch of each cell at each of p lateral places, dot_mean
+    (64, p, d) the mean by superposition of dots alone; scatter (64, d, d) : covariance of touches of one cell at one
+    place. shift_steps (s,) : shifts over which scores are summed. about : the rest.
     """
 
     centre: Floats

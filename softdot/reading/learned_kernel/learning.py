@@ -1,4 +1,4 @@
-"""Learning a kernel from labelled touches: alignment in time, axes, what each cell is like, and how sure to be."""
+"""Learning a kernel from labelled touches: alignment in time and across the line, axes, what each cell is like, and how sure to be."""
 
 from dataclasses import replace
 from typing import Any
@@ -10,19 +10,21 @@ from foundation.arrays import Floats, Ints
 from foundation.errors import InputError
 from softdot.progress import Progress
 from softdot.reading.cells import DOTS, KINDS_OF_CELL
-from softdot.reading.learned_kernel.cell_process import expect_cells, parts_of_covariance
+from softdot.reading.learned_kernel.cell_process import Expected, expect_cells, parts_of_covariance
 from softdot.reading.learned_kernel.courses import REST_SHARE, STEPS, courses_of, place_range_of, shift_courses
 from softdot.reading.learned_kernel.kernel_file import LearnedKernel
 from softdot.reading.learned_kernel.scatter import scatter_of_cells
-from softdot.reading.learned_kernel.scores import along_axes, scores_by_shift, scores_of_touches
-from softdot.reading.learned_kernel.superposition import best_lag, superposed_courses
+from softdot.reading.learned_kernel.scores import along_axes, scores_by_cause, scores_of_touches
+from softdot.reading.learned_kernel.superposition import PLACES, best_lag, superposed_courses
 from softdot.reading.learned_kernel.touches import Touches, clipped_channels, dead_channels
 from softdot.version import installed_version
 
-MOST_AXES, ALIGNMENTS, SHIFTS = 25, 2, np.arange(-4.0, 5.0)
+MOST_AXES, ALIGNMENTS, SHIFTS = 25, 3, np.arange(-4.0, 5.0)
 """Axes that are kept, rounds of alignment, and shifts in steps of a course that are tried."""
 LEAST_CELLS, LEAST_TOUCHES = 6, 2
 """Different cells, and touches of each, that are needed."""
+LIKENESS_PITCHES, LEAST_COUNT = 0.4, 0.2
+"""Pitches across over which what superposition misses changes; touches of a cell at a place that are needed there."""
 QUIETEST = 0.3
 """Least noise of a channel that is believed, of the median of all."""
 CELLS_LEFT_OUT, FOLDS_OF_TOUCHES, TOGETHER = 3, 4, 5
@@ -44,9 +46,9 @@ def learn_kernel(touches: Touches, keep_rest: bool, progress: Progress) -> Learn
         raise InputError("place_mm: no place is passed by all touches; cut them alike")
     courses = courses_of(touches, keep_rest, place_range)
     progress.stage("learn")
-    kernel, shifts = _aligned_kernel(courses, cells)
+    kernel, shifts, shares = _aligned_kernel(courses, cells)
     lag = kernel.about["lag_steps"]
-    sure = _sureness(*_left_out_scores(courses, shifts, cells, lag, progress), np.unique(cells))
+    sure = _sureness(*_left_out_scores(courses, shifts, shares, cells, lag, progress), np.unique(cells))
     return replace(
         kernel,
         about={
@@ -68,8 +70,8 @@ def learn_kernel(touches: Touches, keep_rest: bool, progress: Progress) -> Learn
 def share_of_dots(kernel: LearnedKernel) -> float:
     """Share of what sets the 64 cells apart, in units of the noise, that is the superposition of courses of dots."""
     noise = np.linalg.cholesky(kernel.scatter.mean(axis=0))
-    whole = np.linalg.solve(noise, (kernel.mean - kernel.mean.mean(axis=0)).T)
-    missed = np.linalg.solve(noise, (kernel.mean - kernel.dot_mean - (kernel.mean - kernel.dot_mean).mean(axis=0)).T)
+    mean, beyond = (one[:, len(PLACES) // 2] for one in (kernel.mean, kernel.mean - kernel.dot_mean))
+    whole, missed = (np.linalg.solve(noise, (one - one.mean(axis=0)).T) for one in (mean, beyond))
     return float(1.0 - (missed**2).sum() / (whole**2).sum())
 
 
@@ -106,55 +108,75 @@ def _warnings(touches: Touches, cells: Ints) -> list[str]:
     return found
 
 
-def _aligned_kernel(courses: Floats, cells: Ints) -> tuple[LearnedKernel, Floats]:
-    """The kernel of touches, and the shifts (n,) in steps by which they come late, found by turns."""
-    shifts = np.zeros(len(courses))
-    kernel = _kernel_of(courses, cells)
-    for _ in range(ALIGNMENTS):
-        by_shift = scores_by_shift(kernel, along_axes(kernel, courses), kernel.mean)
-        own = by_shift[np.arange(len(cells)), :, cells]
-        shifts = np.exp(own - logsumexp(own, axis=1, keepdims=True)) @ kernel.shift_steps
+def _aligned_kernel(courses: Floats, cells: Ints) -> tuple[LearnedKernel, Floats, Floats]:
+    """The kernel of touches, the shifts (n,) in steps by which they come late, and the shares (n, p) of the places
+    where they may lie, found by turns: first from superposition alone, with all touches in the middle.
+    """
+    shares = np.tile((PLACES == 0.0).astype(np.float64), (len(courses), 1))
+    kernel = _kernel_of(courses, cells, shares)
+    for number in range(ALIGNMENTS):
+        moved, mean = along_axes(kernel, courses), kernel.mean if number else kernel.dot_mean
+        score = np.empty((*moved.shape[:2], len(PLACES)))
+        for cell in np.unique(cells):
+            score[cells == cell] = scores_by_cause(kernel, moved[cells == cell], mean, cell)
+        likely = np.exp(score - logsumexp(score, axis=(1, 2), keepdims=True))
+        shifts, shares = likely.sum(axis=2) @ kernel.shift_steps, likely.sum(axis=1)
         shifts -= shifts.mean()
-        kernel = _kernel_of(shift_courses(courses, shifts), cells)
-    return kernel, shifts
+        kernel = _kernel_of(shift_courses(courses, shifts), cells, shares, kernel.about["lag_steps"])
+    return kernel, shifts, shares
 
 
-def _kernel_of(courses: Floats, cells: Ints, lag: float | None = None) -> LearnedKernel:
-    """The kernel of aligned touches (n, t, c), which says nothing about itself yet."""
-    kinds, place, counts = np.unique(cells, return_inverse=True, return_counts=True)
-    weight = _channel_weights(courses, cells)
-    centre = courses.mean(axis=0)
+def _kernel_of(courses: Floats, cells: Ints, shares: Floats, lag: float | None = None) -> LearnedKernel:
+    """The kernel of aligned touches (n, t, c) with shares (n, p) of places, which says nothing about itself yet."""
+    kinds, place = np.unique(cells, return_inverse=True)
+    weight, centre = _channel_weights(courses, cells), courses.mean(axis=0)
     flat = ((courses - centre) * weight).reshape(len(courses), -1)
     degrees = len(courses) - len(kinds)
     axes = np.linalg.svd(flat, full_matrices=False)[2][: min(MOST_AXES, max(1, degrees - 1))].T
-    touches = flat @ axes
-    means = np.array([touches[cells == kind].mean(axis=0) for kind in kinds])
-    residuals = touches - means[place]
-    mean_courses = np.array([flat[cells == kind].mean(axis=0) for kind in kinds]).reshape(-1, *centre.shape)
-    lag = best_lag(kinds, mean_courses) if lag is None else lag
-    superposed = superposed_courses(kinds, mean_courses, lag).reshape(KINDS_OF_CELL, -1) @ axes
-    missed = means - superposed[kinds]
-    parts, noise = parts_of_covariance(), (residuals**2).sum(axis=0) / degrees
-    expected = [expect_cells(parts, kinds, one, own / counts) for one, own in zip(missed.T, noise, strict=True)]
+    of_cells = np.eye(len(kinds))[place]
+    counts = of_cells.T @ shares
+    means = np.einsum("nk,np,nx->kpx", of_cells, shares, flat, optimize=True) / np.maximum(counts, 1e-9)[..., None]
+    lag = best_lag(kinds, _means_of_cells(flat, cells).reshape(-1, *centre.shape)) if lag is None else lag
+    superposed = superposed_courses(kinds, counts, means.reshape(*counts.shape, *centre.shape), lag)
+    superposed = superposed.reshape(*superposed.shape[:2], -1) @ axes
+    touches, means = flat @ axes, means @ axes
+    noise = np.einsum("np,npd->d", shares, (touches[:, None] - means[place]) ** 2) / degrees
+    expected = _expected(kinds, counts, means - superposed[kinds], noise)
+    mean = superposed + np.stack([one.mean for one in expected], axis=2)
     return LearnedKernel(
         centre=centre,
         weight=weight,
         axes=axes.reshape(*centre.shape, -1),
-        mean=superposed + np.stack([one.mean for one in expected], axis=1),
+        mean=mean,
         dot_mean=superposed,
-        variance=np.stack([one.variance for one in expected], axis=1),
-        scatter=scatter_of_cells(residuals, cells),
+        variance=np.stack([one.variance for one in expected], axis=2),
+        scatter=scatter_of_cells(touches - np.einsum("np,npd->nd", shares, mean[cells]), cells),
         shift_steps=SHIFTS,
         about={"lag_steps": lag},
     )
 
 
+def _expected(kinds: Ints, counts: Floats, missed: Floats, noise: Floats) -> list[Expected]:
+    """What superposition misses in each cell at each place, for every axis; missed (k, p, d) in cells (k,) learned."""
+    parts, alike = parts_of_covariance(), np.exp(-0.5 * ((PLACES[:, None] - PLACES) / LIKENESS_PITCHES) ** 2)
+    cell, place = np.nonzero(counts > LEAST_COUNT)
+    states, many = kinds[cell] * len(PLACES) + place, counts[cell, place]
+    return [
+        expect_cells(parts, alike, states, one, own / many)
+        for one, own in zip(missed[cell, place].T, noise, strict=True)
+    ]
+
+
+def _means_of_cells(touches: Floats, cells: Ints) -> Floats:
+    """Mean of the touches (n, ...) of each cell, by rising cell."""
+    return np.array([touches[cells == kind].mean(axis=0) for kind in np.unique(cells)])
+
+
 def _channel_weights(courses: Floats, cells: Ints) -> Floats:
     """One over the noise (c,) of each channel before the dots come; 0 for a dead one."""
     before = courses[:, : max(1, round(REST_SHARE * STEPS))]
-    kinds, place = np.unique(cells, return_inverse=True)
-    means = np.array([before[cells == kind].mean(axis=0) for kind in kinds])
-    noise = np.sqrt(((before - means[place]) ** 2).mean(axis=(0, 1)))
+    means = _means_of_cells(before, cells)[np.unique(cells, return_inverse=True)[1]]
+    noise = np.sqrt(((before - means) ** 2).mean(axis=(0, 1)))
     alive = np.ptp(courses, axis=(0, 1)) > 0.0
     heard = noise[alive & (noise > 0.0)]
     least = QUIETEST * float(np.median(heard)) if len(heard) else 1.0
@@ -162,7 +184,7 @@ def _channel_weights(courses: Floats, cells: Ints) -> Floats:
 
 
 def _left_out_scores(
-    courses: Floats, shifts: Floats, cells: Ints, lag: float, progress: Progress
+    courses: Floats, shifts: Floats, shares: Floats, cells: Ints, lag: float, progress: Progress
 ) -> tuple[Any, Any, Any, Any]:
     """Scores and cells of touches of cells that were left out, then of touches left out while others stayed."""
     aligned = shift_courses(courses, shifts)
@@ -173,7 +195,7 @@ def _left_out_scores(
     folds = [*apart, *(turn == part for part in range(FOLDS_OF_TOUCHES))]
     scores = []
     for number, out in enumerate(folds):
-        kernel = _kernel_of(aligned[~out], cells[~out], lag)
+        kernel = _kernel_of(aligned[~out], cells[~out], shares[~out], lag)
         scores.append(scores_of_touches(kernel, along_axes(kernel, courses[out])))
         progress.step(number + 1, len(folds), "left out")
     count = len(apart)

@@ -1,6 +1,6 @@
 """How touches of one cell scatter: by a few causes whose effect depends on the dots, and by noise.
 
-A cause is drawn anew in each touch, such as the gain or the lateral place of the finger. What it does is the same part
+A cause is drawn anew in each touch, such as the gain of the finger. What it does is the same part
 for all cells and a part for each raised dot, so that it is known too for cells that were never touched: factor analysis
 by expectation and maximisation (Rubin and Thayer, Psychometrika 47 (1982) 69) with such loadings.
 """
@@ -10,7 +10,7 @@ import numpy as np
 from foundation.arrays import Floats, Ints
 from softdot.reading.cells import DOTS, KINDS_OF_CELL
 
-CAUSES, RIDGE, ROUNDS, SHRINKAGE = 3, 5.0, 40, 0.05
+CAUSES, RIDGE, ROUNDS, SHRINKAGE = 2, 5.0, 40, 0.05
 """Number of causes; touches for which the guess counts that a cause does nothing; rounds; share by which covariances
 between axes of the noise are lowered.
 """

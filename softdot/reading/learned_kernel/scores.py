@@ -1,4 +1,4 @@
-"""How well touches agree with each cell: logarithms of Student likelihoods, summed over shifts in time."""
+"""How well touches agree with each cell: logarithms of Student likelihoods, summed over shifts and lateral places."""
 
 import numpy as np
 from scipy.linalg import solve_triangular
@@ -8,9 +8,12 @@ from foundation.arrays import Floats
 from softdot.reading.cells import KINDS_OF_CELL
 from softdot.reading.learned_kernel.courses import shift_courses
 from softdot.reading.learned_kernel.kernel_file import LearnedKernel
+from softdot.reading.learned_kernel.superposition import PLACES
 
-FREEDOM, SHIFT_DEVIATION_STEPS = 8.0, 1.6
-"""Degrees of freedom of the likelihood, which forgive touches far from all; deviation of the shift of a touch."""
+FREEDOM, SHIFT_DEVIATION_STEPS, PLACE_DEVIATION_PITCHES = 8.0, 1.6, 0.24
+"""Degrees of freedom of the likelihood, which forgive touches far from all; deviations of the shift and of the lateral
+place of a touch.
+"""
 
 
 def along_axes(kernel: LearnedKernel, courses: Floats) -> Floats:
@@ -20,24 +23,21 @@ def along_axes(kernel: LearnedKernel, courses: Floats) -> Floats:
     return np.stack([one.reshape(len(courses), -1) @ axes for one in moved], axis=1)
 
 
-def scores_by_shift(kernel: LearnedKernel, touches: Floats, mean: Floats) -> Floats:
-    """Logarithm (n, s, 64) of the density of touches (n, s, d) for each shift and each cell of the mean (64, d)."""
+def scores_by_cause(kernel: LearnedKernel, touches: Floats, mean: Floats, cell: int) -> Floats:
+    """Logarithm (n, s, p) of the density of touches (n, s, d) of a cell for each shift and place; mean : (64, p, d)."""
     count, shifts, size = touches.shape
-    found = np.empty((count, shifts, KINDS_OF_CELL))
-    for cell in range(KINDS_OF_CELL):
-        factor = np.linalg.cholesky(kernel.scatter[cell] + np.diag(kernel.variance[cell]))
-        away = solve_triangular(factor, (touches - mean[cell]).reshape(-1, size).T, lower=True)
+    found = np.empty((count, shifts, len(PLACES)))
+    for place, (centre, variance) in enumerate(zip(mean[cell], kernel.variance[cell], strict=True)):
+        factor = np.linalg.cholesky(kernel.scatter[cell] + np.diag(variance))
+        away = solve_triangular(factor, (touches - centre).reshape(-1, size).T, lower=True)
         distance = (away**2).sum(axis=0).reshape(count, shifts)
-        found[..., cell] = -0.5 * (FREEDOM + size) * np.log1p(distance / FREEDOM) - np.log(np.diag(factor)).sum()
-    return found + _shift_score(kernel)[:, None]
+        found[..., place] = -0.5 * (FREEDOM + size) * np.log1p(distance / FREEDOM) - np.log(np.diag(factor)).sum()
+    shift, place = kernel.shift_steps / SHIFT_DEVIATION_STEPS, PLACES / PLACE_DEVIATION_PITCHES
+    return found - 0.5 * (shift**2)[:, None] - 0.5 * place**2
 
 
 def scores_of_touches(kernel: LearnedKernel, touches: Floats, by_dots_alone: bool = False) -> Floats:
     """Scores (n, 64) of touches (n, s, d). by_dots_alone : with the means of superposition."""
     mean = kernel.dot_mean if by_dots_alone else kernel.mean
-    return np.asarray(logsumexp(scores_by_shift(kernel, touches, mean), axis=1))
-
-
-def _shift_score(kernel: LearnedKernel) -> Floats:
-    """Logarithm (s,) of the prior of each shift, but for a constant."""
-    return np.asarray(-0.5 * (kernel.shift_steps / SHIFT_DEVIATION_STEPS) ** 2)
+    cells = [logsumexp(scores_by_cause(kernel, touches, mean, cell), axis=(1, 2)) for cell in range(KINDS_OF_CELL)]
+    return np.stack(cells, axis=1)
