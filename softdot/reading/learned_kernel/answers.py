@@ -42,7 +42,7 @@ def answer_touches(kernel: LearnedKernel, touches: Touches, among: str) -> Touch
     """
     _refuse_others(kernel, touches)
     courses = courses_of(touches, kernel.about["rest_kept"], kernel.about["place_range_mm"])
-    moved = along_axes(kernel, courses)
+    moved = along_axes(kernel, courses[:, :, np.array(kernel.about["channels_heard"]) - 1])
     barred = _barred(kernel, among)
     score = scores_of_touches(kernel, moved)
     dots = scores_of_touches(kernel, moved, by_dots_alone=True)

@@ -1,7 +1,7 @@
 """A Gaussian process over the 64 cells and the lateral places: what one axis of a touch is expected to be for each.
 
-Its covariance over cells is that of a constant, of one independent part for each raised dot, and of a part that is alike
-in cells which differ by few dots; all of them are alike at places that are near.
+Its covariance over cells is that of a constant, of one independent part for each raised dot, and of a part that is
+alike in cells which differ by few dots; all of them are alike at places that are near.
 """
 
 from dataclasses import dataclass

@@ -19,9 +19,9 @@ TABLES = ("centre", "weight", "axes", "mean", "dot_mean", "variance", "scatter",
 
 @dataclass(frozen=True)
 class LearnedKernel:
-    """What touches of each of the 64 cells are like, along d axes of all that c channels do at t steps of a touch.
+    """What touches of each of the 64 cells are like, along d axes of all that c heard channels do at t steps.
 
-    centre (t, c) : mean of the learned touches; weight (c,) : by which each channel is multiplied, 0 where it is dead.
+    centre (t, c) : mean of the learned touches; weight (c,) : by which each channel is multiplied.
     axes (t, c, d). mean and variance (64, p, d) : of the mean touch of each cell at each of p lateral places, dot_mean
     (64, p, d) the mean by superposition of dots alone; scatter (64, d, d) : covariance of touches of one cell at one
     place. shift_steps (s,) : shifts over which scores are summed. about : the rest.

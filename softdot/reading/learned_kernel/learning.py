@@ -1,4 +1,4 @@
-"""Learning a kernel from labelled touches: alignment in time and across the line, axes, what each cell is like, and how sure to be."""
+"""Learning a kernel from labelled touches: where they lie in time and across the line, what each cell is like."""
 
 from dataclasses import replace
 from typing import Any
@@ -9,14 +9,14 @@ from scipy.special import log_softmax, logsumexp
 from foundation.arrays import Floats, Ints
 from foundation.errors import InputError
 from softdot.progress import Progress
-from softdot.reading.cells import DOTS, KINDS_OF_CELL
+from softdot.reading.cells import DOTS
 from softdot.reading.learned_kernel.cell_process import Expected, expect_cells, parts_of_covariance
 from softdot.reading.learned_kernel.courses import REST_SHARE, STEPS, courses_of, place_range_of, shift_courses
 from softdot.reading.learned_kernel.kernel_file import LearnedKernel
 from softdot.reading.learned_kernel.scatter import scatter_of_cells
 from softdot.reading.learned_kernel.scores import along_axes, scores_by_cause, scores_of_touches
 from softdot.reading.learned_kernel.superposition import PLACES, best_lag, superposed_courses
-from softdot.reading.learned_kernel.touches import Touches, clipped_channels, dead_channels
+from softdot.reading.learned_kernel.touches import Touches, clipped_channels
 from softdot.version import installed_version
 
 MOST_AXES, ALIGNMENTS, SHIFTS = 25, 3, np.arange(-4.0, 5.0)
@@ -27,6 +27,8 @@ LIKENESS_PITCHES, LEAST_COUNT = 0.4, 0.2
 """Pitches across over which what superposition misses changes; touches of a cell at a place that are needed there."""
 QUIETEST = 0.3
 """Least noise of a channel that is believed, of the median of all."""
+RISE, RISE_IF_CLIPPED = 1.45, 4.0
+"""By which the variance of a channel must rise as dots pass, and where most of its values are clipped."""
 CELLS_LEFT_OUT, FOLDS_OF_TOUCHES, TOGETHER = 3, 4, 5
 """To learn how sure to be: cells that are left out together, parts into which the touches of each cell are cut, and
 touches that are read together.
@@ -44,7 +46,8 @@ def learn_kernel(touches: Touches, keep_rest: bool, progress: Progress) -> Learn
     place_range = place_range_of(touches)
     if place_range is not None and not place_range[1] > place_range[0]:
         raise InputError("place_mm: no place is passed by all touches; cut them alike")
-    courses = courses_of(touches, keep_rest, place_range)
+    heard = _heard_channels(touches, keep_rest)
+    courses = courses_of(touches, keep_rest, place_range)[:, :, heard]
     progress.stage("learn")
     kernel, shifts, shares = _aligned_kernel(courses, cells)
     lag = kernel.about["lag_steps"]
@@ -54,6 +57,7 @@ def learn_kernel(touches: Touches, keep_rest: bool, progress: Progress) -> Learn
         about={
             "softdot_version": installed_version(),
             "channels": touches.taxels.shape[2],
+            "channels_heard": (heard + 1).tolist(),
             "sampling_Hz": touches.sampling_Hz,
             "duration_s": touches.duration_s,
             "place_range_mm": place_range,
@@ -62,7 +66,7 @@ def learn_kernel(touches: Touches, keep_rest: bool, progress: Progress) -> Learn
             "lag_steps": lag,
             "share_of_dots": share_of_dots(kernel),
             **sure,
-            "warnings": _warnings(touches, cells),
+            "warnings": _warnings(touches, cells, heard),
         },
     )
 
@@ -85,13 +89,13 @@ def _checked_cells(touches: Touches) -> Ints:
             f"letter: {len(kinds)} different cells, at least {counts.min()} touches of each: at least {LEAST_CELLS} "
             f"cells and {LEAST_TOUCHES} touches of each are needed"
         )
-    if len(dead_channels(touches.taxels)) == touches.taxels.shape[2]:
+    if not np.ptp(touches.taxels, axis=(0, 1)).any():
         raise InputError("taxels: no channel ever changes")
     return touches.cells
 
 
-def _warnings(touches: Touches, cells: Ints) -> list[str]:
-    """What limits the kernel: dots that were never touched or never absent, clipped and dead channels."""
+def _warnings(touches: Touches, cells: Ints, heard: Ints) -> list[str]:
+    """What limits the kernel: dots that were never touched or never absent, channels clipped or left out."""
     found = []
     raised = (cells[:, None] >> np.arange(DOTS) & 1).astype(bool)
     for dot in range(DOTS):
@@ -102,9 +106,9 @@ def _warnings(touches: Touches, cells: Ints) -> list[str]:
     if clipped:
         told = ", ".join(f"{number} ({100 * share:.0f} %)" for number, share in clipped.items())
         found.append(f"channels with many values at their least or largest one, clipped perhaps: {told}")
-    dead = dead_channels(touches.taxels)
-    if dead:
-        found.append(f"channels that never change and are left out: {', '.join(map(str, dead))}")
+    deaf = np.setdiff1d(np.arange(touches.taxels.shape[2]), heard) + 1
+    if len(deaf):
+        found.append(f"channels that do not answer to dots and are left out: {', '.join(map(str, deaf))}")
     return found
 
 
@@ -172,15 +176,26 @@ def _means_of_cells(touches: Floats, cells: Ints) -> Floats:
     return np.array([touches[cells == kind].mean(axis=0) for kind in np.unique(cells)])
 
 
+def _heard_channels(touches: Touches, keep_rest: bool) -> Ints:
+    """Channels, from 0 on, in which more happens while dots pass than before; all that change where the rest is kept.
+
+    One that is clipped most of the time tells rather how hard the finger was pressed on, unless dots stand out in it.
+    """
+    alive = np.ptp(touches.taxels, axis=(0, 1)) > 0.0
+    courses, first = courses_of(touches, False, None), max(1, round(REST_SHARE * STEPS))
+    before, after = courses[:, :first].var(axis=(0, 1)), courses[:, first:].var(axis=(0, 1))
+    clipped = [clipped_channels(touches.taxels).get(number + 1, 0.0) > 0.5 for number in range(len(alive))]
+    heard = alive & (keep_rest | (after > np.where(clipped, RISE_IF_CLIPPED, RISE) * before))
+    return np.flatnonzero(heard if heard.any() else alive)
+
+
 def _channel_weights(courses: Floats, cells: Ints) -> Floats:
-    """One over the noise (c,) of each channel before the dots come; 0 for a dead one."""
+    """One over the noise (c,) of each channel before the dots come."""
     before = courses[:, : max(1, round(REST_SHARE * STEPS))]
     means = _means_of_cells(before, cells)[np.unique(cells, return_inverse=True)[1]]
     noise = np.sqrt(((before - means) ** 2).mean(axis=(0, 1)))
-    alive = np.ptp(courses, axis=(0, 1)) > 0.0
-    heard = noise[alive & (noise > 0.0)]
-    least = QUIETEST * float(np.median(heard)) if len(heard) else 1.0
-    return np.where(alive, 1.0 / np.maximum(noise, least), 0.0)
+    heard = noise[noise > 0.0]
+    return np.asarray(1.0 / np.maximum(noise, QUIETEST * float(np.median(heard)) if len(heard) else 1.0))
 
 
 def _left_out_scores(

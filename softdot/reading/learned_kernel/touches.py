@@ -109,11 +109,6 @@ def clipped_channels(taxels: Floats) -> dict[int, float]:
     return found
 
 
-def dead_channels(taxels: Floats) -> list[int]:
-    """Channels from 1 on that never change."""
-    return [int(number) + 1 for number in np.flatnonzero(np.ptp(taxels, axis=(0, 1)) == 0.0)]
-
-
 def letter_of(cell: int) -> str | None:
     """The letter of a cell, a blank for the one without dots; None where the cell is no letter."""
     return " " if cell == 0 else {number: letter for letter, number in letter_cells().items()}.get(cell)
