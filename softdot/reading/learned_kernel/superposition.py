@@ -6,6 +6,8 @@ cell leaves is the sum over its dots, which falls as they share the load, on a c
 common course are Gaussian processes, smooth over time and across the line, for each channel by itself.
 """
 
+from functools import lru_cache
+
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
@@ -46,12 +48,18 @@ def superposed_courses(cells: Ints, counts: Floats, courses: Floats, lag: float)
     courses (k, p, t, c) : means of the touches of cells (k,) at each place, of which there are counts (k, p).
     """
     length = courses.shape[2]
-    patterns = _patterns(np.arange(KINDS_OF_CELL), np.arange(len(PLACES)), length, lag)
+    patterns = _patterns_of_all(length, lag)
     size = patterns.shape[3]
     own = patterns[cells].reshape(-1, size)
     trust = np.repeat((counts / (MISSED * counts + NOISE)).ravel(), length)[:, None]
     weights = np.linalg.solve(own.T @ (trust * own) + np.eye(size), own.T @ (trust * courses.reshape(len(own), -1)))
     return np.asarray(patterns @ weights)
+
+
+@lru_cache(maxsize=1)
+def _patterns_of_all(length: int, lag: float) -> Floats:
+    """Courses of all cells at all places, kept as each learning needs the same ones many times."""
+    return _patterns(np.arange(KINDS_OF_CELL), np.arange(len(PLACES)), length, lag)
 
 
 def _patterns(cells: Ints, places: Ints, length: int, lag: float) -> Floats:
