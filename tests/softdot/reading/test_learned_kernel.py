@@ -14,6 +14,7 @@ from softdot.progress import Untold
 from softdot.reading.learned_kernel.answers import answer_touches
 from softdot.reading.learned_kernel.kernel_file import load_learned_kernel
 from softdot.reading.learned_kernel.learning import learn_kernel
+from softdot.reading.learned_kernel.superposition import PLACES, superposed_courses
 from softdot.reading.learned_kernel.touches import Touches, join_touches, letter_cells
 from tests.cases import for_each
 from tests.softdot.reading.made_touches import made_touches
@@ -82,14 +83,26 @@ def test_probabilities_do_not_depend_on_the_order_of_touches_or_on_the_resting_v
     np.testing.assert_allclose(answer_touches(kernel, raised, "all").probability, usual, atol=1e-9)
 
 
-def test_other_channels_and_units_in_both_recordings_change_nothing(usual):
+def test_other_channels_and_units_in_both_recordings_and_a_channel_of_noise_change_nothing(usual):
     def changed(values):
-        return 1e3 * values[:, :, [3, 0, 5, 1, 4, 2]]
+        noise = np.random.default_rng(7).standard_normal((*values.shape[:2], 1))
+        return 1e3 * np.concatenate([values[:, :, [3, 0, 5, 1, 4, 2]], noise], axis=2)
 
     met, asked = touches_of(MET, 5, 0), touches_of(MET[:6] + NOT_MET, 4, 1)
     kernel = learn_kernel(Touches(changed(met.taxels), met.sampling_Hz, met.cells), False, Untold())
+    assert kernel.about["channels_heard"] == [1, 2, 3, 4, 5, 6]
     found = answer_touches(kernel, Touches(changed(asked.taxels), asked.sampling_Hz), "all").probability
     np.testing.assert_allclose(found, usual, atol=2e-3)
+
+
+def test_dots_of_one_row_differ_by_the_lag_and_those_of_one_column_by_a_pitch_across():
+    courses = np.random.default_rng(0).standard_normal((3, len(PLACES), 32, 2))
+    superposed = superposed_courses(np.array([1, 6, 8]), np.ones((3, len(PLACES))), courses, 4.0)
+    empty, dot_1, dot_2, dot_4 = superposed[[0, 1, 2, 8]] - superposed[0]
+    assert not empty.any()
+    low, high = 0, np.flatnonzero(np.isclose(PLACES, PLACES[0] + 1.0))[0]
+    np.testing.assert_allclose(dot_1[low], dot_2[high], atol=1e-9)
+    np.testing.assert_allclose(dot_1[:, :-4], dot_4[:, 4:], atol=1e-9)
 
 
 def refused(arguments, out, capfd):
