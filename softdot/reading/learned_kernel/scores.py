@@ -32,8 +32,8 @@ def scores_by_cause(kernel: LearnedKernel, touches: Floats, mean: Floats, cell: 
         away = solve_triangular(factor, (touches - centre).reshape(-1, size).T, lower=True)
         distance = (away**2).sum(axis=0).reshape(count, shifts)
         found[..., place] = -0.5 * (FREEDOM + size) * np.log1p(distance / FREEDOM) - np.log(np.diag(factor)).sum()
-    shift, place = kernel.shift_steps / SHIFT_DEVIATION_STEPS, PLACES / PLACE_DEVIATION_PITCHES
-    return found - 0.5 * (shift**2)[:, None] - 0.5 * place**2
+    late, aside = kernel.shift_steps / SHIFT_DEVIATION_STEPS, PLACES / PLACE_DEVIATION_PITCHES
+    return np.asarray(found - 0.5 * (late**2)[:, None] - 0.5 * aside**2)
 
 
 def scores_of_touches(kernel: LearnedKernel, touches: Floats, by_dots_alone: bool = False) -> Floats:
