@@ -1,8 +1,9 @@
 """One step of all hypotheses: they move, meet columns of dots, are weighed by the charges, merged and thinned out.
 
-The numbers of a hypothesis lie in rows of three arrays: state (h, 4) and choice (h, 6) by the names below, and drift
-(h, n) of the charge of each channel. Columns of dots that were seen are kept sixteen at a time, four bits each, the
-last one lowest; 8 stands for a column that passed without contact.
+The numbers of a hypothesis lie in rows of three arrays: state (h, 4) and choice (h, 6) by the names below, and memory
+(h, 24 + 2 n): heights of the dots of the last four columns as shares of a nominal charge, the variances of these, and
+level and rate of the drift of each channel. Columns of dots that were seen are kept sixteen at a time, four bits each,
+the last one lowest; 8 stands for a column that passed without contact.
 """
 
 from typing import NamedTuple
@@ -16,10 +17,15 @@ from solve.compiled import piece
 PLACE, LOG_SPEED, MEAN_LOG_SPEED, LOG_WEIGHT = range(4)
 WAY, OFFSET, YAW, TOUCH, SEEN, COLUMNS = range(6)
 UNSEEN, KEPT_COLUMNS = 8, 16
+ROWS, KEPT_HEIGHTS = 3, 4
+HEIGHT, SPREAD, LEVEL = 0, ROWS * KEPT_HEIGHTS, 2 * ROWS * KEPT_HEIGHTS
+"""Places in the memory; of the rate of the drift n behind its level."""
 FORTH, STILL, BACK = 1, 0, -1
 MOST_CHILDREN = 60_000
 """Room for the children of a step; those beyond are not looked at."""
 MOST_OPTIONS = 12
+RARE_STEPS = 3
+"""What a hand does rarely is tried in one of so many steps, as often as if it were tried in all of them."""
 CHANCE, CHANGE, NEW_WAY, ASIDE, TURN, CONTACT = range(6)
 """Columns of the ways in which a hypothesis may go on: log-probability, and what changes."""
 PLACE_BIN_MM, SPEED_BIN = 0.12, 0.18
@@ -28,14 +34,21 @@ OLD_MM = 1.8
 """Way behind the array's middle at which a column that passed without contact is looked at no more."""
 LARGEST_RESIDUAL = 3.0
 """Standard deviations that the drift takes from one residual at most."""
+LEAST_SPREAD = 0.04**2
+"""Least variance of a height."""
+REAR, FRONT = 1, 2
+"""Bits of the columns in the window that a hypothesis meets for the first time."""
 
 
 class Sensor(NamedTuple):
-    """What the charges are compared with: the table, its pitches, and gain, floor of the variance and drift of each
-    channel (n,). drift_pC : standard deviation of the drift in a step.
+    """What the charges are compared with: charges of single dots, what dots beside each other add, pitches, and gain,
+    floor of the variance and drift of each channel (n,).
+
+    drift_pC, bend_pC : standard deviations in a step of the walk of the drift, and of its way per step.
     """
 
-    charge: Floats
+    lone: Floats
+    beside: Floats
     within: Bools
     dot_pitch_mm: float
     cell_pitch_mm: float
@@ -43,14 +56,16 @@ class Sensor(NamedTuple):
     gain: Floats
     floor_pC2: Floats
     drift_pC: Floats
+    bend_pC: Floats
 
 
 class HandMotion(NamedTuple):
     """Log-probabilities of a step, and constants of the weights.
 
     faster, jump : steps of the log-speed; relax, settle : shares of the way of log-speed and mean to each other in a
-    step. rough : standard deviation of a charge over the charge; degrees : of Student's t. kept_log, most_kept : how
-    far behind the best, and how many hypotheses are kept.
+    step. height, height_spread : mean and variance of the height of dots, as shares of the nominal charge. rough :
+    standard deviation of a charge over the charge; degrees : of Student's t. kept_log, most_kept : how far behind the
+    best, and how many hypotheses are kept.
     """
 
     step_s: float
@@ -68,6 +83,8 @@ class HandMotion(NamedTuple):
     log_lift: float
     log_touch: float
     log_blank: float
+    height: float
+    height_spread: float
     rough: float
     degrees: float
     kept_log: float
@@ -94,63 +111,114 @@ def _window(place, sensor):  # type: ignore[no-untyped-def]
 
 
 @piece()
-def _log_likelihood(predicted, measured, drift, sensor, settings):  # type: ignore[no-untyped-def]
-    """Log-likelihood of the charges measured (n,) by Student's t, whose scale grows with the charge."""
-    squares, tails = 1.0, 1.0
-    for j in range(measured.shape[0]):
-        if sensor.alive[j]:
-            charge = sensor.gain[j] * predicted[j]
-            variance = sensor.floor_pC2[j] + (settings.rough * charge) ** 2
-            squares *= variance
-            tails *= 1.0 + (measured[j] - drift[j] - charge) ** 2 / (settings.degrees * variance)
-    return -0.5 * np.log(squares) - 0.5 * (settings.degrees + 1.0) * np.log(tails)
+def _take_heights(memory, first, pattern, fresh, settings, found):  # type: ignore[no-untyped-def]
+    """Fill number, height and spread (3, 6) of the dots of a pattern in the window, and return how many these are."""
+    count = 0
+    for side in range(2):
+        slot = ROWS * ((first + side) & (KEPT_HEIGHTS - 1))
+        for row in range(ROWS):
+            dot = ROWS * side + row
+            if pattern >> dot & 1:
+                found[0, count] = dot
+                if fresh >> side & 1:
+                    found[1, count], found[2, count] = settings.height, settings.height_spread
+                else:
+                    found[1, count], found[2, count] = memory[HEIGHT + slot + row], memory[SPREAD + slot + row]
+                count += 1
+    return count
+
+
+@piece()
+def _evidence(memory, place, choice, pattern, found, count, measured, temper, sensor, settings, rest):  # type: ignore[no-untyped-def]
+    """Log-likelihood of the charges measured (n,), channel after channel.
+
+    Heights and spreads of the dots that were found (3, count) are moved on by the Kalman filter; rest (n,) is what is
+    left of the charges but for single dots. Student's t, whose scale grows with the charge; temper weakens it.
+    """
+    channels = measured.shape[0]
+    row = _window(place, sensor)[0]
+    lone = sensor.lone[choice[YAW], row, choice[OFFSET]]
+    beside = sensor.beside[row, choice[OFFSET], pattern]
+    mean = 0.0
+    for k in range(count):
+        mean += found[1, k]
+    mean = mean / count if count else 0.0
+    widths, spreads, tails = 1.0, 1.0, 1.0
+    for j in range(channels):
+        rest[j] = measured[j] - memory[LEVEL + j] - settings.step_s * memory[LEVEL + channels + j]
+        if not sensor.alive[j]:
+            continue
+        gain = sensor.gain[j]
+        more, charge, spread = gain * mean * beside[j], 0.0, 0.0
+        for k in range(count):
+            one = gain * lone[int(found[0, k]), j]
+            charge += one * found[1, k]
+            spread += one * one * found[2, k]
+        rest[j] -= more
+        residual = rest[j] - charge
+        variance = sensor.floor_pC2[j] + (settings.rough * (charge + more)) ** 2
+        unit = residual * residual / (variance + temper * spread)
+        widths *= variance
+        spreads *= 1.0 + temper * spread / variance
+        tails *= 1.0 + unit / settings.degrees
+        if count:
+            believed = min(1.0, (settings.degrees + 1.0) / (settings.degrees + unit))
+            share = temper / (variance + temper * spread)
+            for k in range(count):
+                own = gain * lone[int(found[0, k]), j] * found[2, k] * share
+                found[1, k] += believed * own * residual
+                found[2, k] = max(found[2, k] * (1.0 - own * gain * lone[int(found[0, k]), j]), LEAST_SPREAD)
+    return -0.5 * temper * (np.log(widths) + (settings.degrees + 1.0) * np.log(tails)) - 0.5 * np.log(spreads)
 
 
 @nb.njit(cache=True)
-def advance(state, choice, drift, measured, temper, may_touch, sensor, settings, room):  # type: ignore[no-untyped-def]
+def advance(state, choice, memory, measured, temper, may_touch, turn, sensor, settings, room):  # type: ignore[no-untyped-def]
     """The hypotheses after a step with the charges measured (n,), and the logarithm of their evidence.
 
-    temper : exponent of the likelihood. may_touch : whether lost contact may be found again. room : three arrays for
-    children, state (m, 4), choice (m, 6) and number of the parent (m,).
+    temper : exponent of the likelihood. may_touch : whether lost contact may be found again. turn : of what is rare.
+    room : four arrays for children, state (m, 4), choice (m, 6), number of the parent (m,) and bits of new columns.
     """
-    made, made_choice, parent = room
+    made, made_choice, parent, fresh = room
     count, best = 0, -np.inf
     top = state[:, LOG_WEIGHT].max()
     options = np.empty((MOST_OPTIONS, 6))
+    found, rest = np.empty((3, 2 * ROWS)), np.empty(measured.shape[0])
     for h in range(state.shape[0]):
-        number = _options(choice[h], options, may_touch, settings)
+        number = _options(choice[h], options, may_touch, turn, settings)
         for one in range(number):
             if state[h, LOG_WEIGHT] + options[one, CHANCE] < top - settings.kept_log or count > MOST_CHILDREN - 65:
                 continue
             begin = count
-            count = _children(state[h], choice[h], options[one], made, made_choice, count, sensor, settings)
+            count = _children(state[h], choice[h], options[one], made, made_choice, fresh, count, sensor, settings)
             for child in range(begin, count):
                 parent[child] = h
-                row, first = _window(made[child, PLACE], sensor)
-                if made_choice[child, TOUCH] == 1:
-                    pattern = _pattern(made_choice[child], first)
-                    predicted = sensor.charge[made_choice[child, YAW], row, made_choice[child, OFFSET], pattern]
-                else:
-                    predicted = sensor.charge[0, 0, 0, 0]
-                made[child, LOG_WEIGHT] += temper * _log_likelihood(predicted, measured, drift[h], sensor, settings)
+                pattern, first = _pattern(made[child, PLACE], made_choice[child], sensor)
+                dots = _take_heights(memory[h], first, pattern, fresh[child], settings, found)
+                made[child, LOG_WEIGHT] += _evidence(
+                    memory[h], made[child, PLACE], made_choice[child], pattern, found, dots, measured, temper, sensor,
+                    settings, rest,
+                )  # fmt: skip
                 best = max(best, made[child, LOG_WEIGHT])
-    kept_state, kept_choice, kept_parent = _merged(made, made_choice, parent, count, best, settings)
-    kept_drift = _drifted(kept_state, kept_choice, drift[kept_parent], measured, sensor, settings)
-    return kept_state, kept_choice, kept_drift, _log_sum(kept_state[:, LOG_WEIGHT]) - _log_sum(state[:, LOG_WEIGHT])
+    kept_state, kept_choice, chosen = _merged(made, made_choice, count, best, settings)
+    kept_memory = memory[parent[chosen]]
+    _remember(kept_state, kept_choice, kept_memory, fresh[chosen], measured, temper, sensor, settings)
+    return kept_state, kept_choice, kept_memory, _log_sum(kept_state[:, LOG_WEIGHT]) - _log_sum(state[:, LOG_WEIGHT])
 
 
 @nb.njit(cache=True)
-def weighed(state, choice, drift, measured, sensor, settings):  # type: ignore[no-untyped-def]
+def weighed(state, choice, memory, measured, sensor, settings):  # type: ignore[no-untyped-def]
     """Beam after they were weighed by the charges measured (n,), without a motion."""
     made = state.copy()
+    found, rest = np.empty((3, 2 * ROWS)), np.empty(measured.shape[0])
     for h in range(state.shape[0]):
-        row, first = _window(made[h, PLACE], sensor)
-        pattern = _pattern(choice[h], first) if choice[h, TOUCH] == 1 else 0
-        predicted = sensor.charge[choice[h, YAW], row, choice[h, OFFSET], pattern]
-        made[h, LOG_WEIGHT] += _log_likelihood(predicted, measured, drift[h], sensor, settings)
+        pattern, first = _pattern(made[h, PLACE], choice[h], sensor)
+        dots = _take_heights(memory[h], first, pattern, 0, settings, found)
+        made[h, LOG_WEIGHT] += _evidence(
+            memory[h], made[h, PLACE], choice[h], pattern, found, dots, measured, 1.0, sensor, settings, rest
+        )  # fmt: skip
     best = made[:, LOG_WEIGHT].max()
-    kept_state, kept_choice, parent = _merged(made, choice, np.arange(len(made)), len(made), best, settings)
-    return kept_state, kept_choice, drift[parent]
+    kept_state, kept_choice, chosen = _merged(made, choice, len(made), best, settings)
+    return kept_state, kept_choice, memory[chosen]
 
 
 @nb.njit(cache=True)
@@ -160,15 +228,21 @@ def _log_sum(weights):  # type: ignore[no-untyped-def]
 
 
 @piece()
-def _pattern(choice, first):  # type: ignore[no-untyped-def]
-    """The pattern of both columns in the window; what passed without contact counts as blank."""
+def _pattern(place, choice, sensor):  # type: ignore[no-untyped-def]
+    """The pattern of both columns in the window, and the number of the one behind.
+
+    What passed without contact counts as blank, and so does everything without contact.
+    """
+    first = _window(place, sensor)[1]
+    if choice[TOUCH] == 0:
+        return 0, first
     rear = column_of(choice[COLUMNS], choice[SEEN], first)
     front = column_of(choice[COLUMNS], choice[SEEN], first + 1)
-    return (rear & 7) | (front & 7) << 3
+    return (rear & 7) | (front & 7) << 3, first
 
 
 @nb.njit(cache=True)
-def _options(choice, options, may_touch, settings):  # type: ignore[no-untyped-def]
+def _options(choice, options, may_touch, turn, settings):  # type: ignore[no-untyped-def]
     """Fill the ways in which a hypothesis may go on, and return their number."""
     way, touch = choice[WAY], choice[TOUCH]
     options[:, CHANGE] = 0.0
@@ -176,6 +250,7 @@ def _options(choice, options, may_touch, settings):  # type: ignore[no-untyped-d
     options[:, ASIDE:CONTACT] = 0
     options[:, CONTACT] = touch
     options[0, CHANCE] = 0.0
+    number = 1
     if way == STILL:
         options[1, CHANCE], options[1, NEW_WAY] = settings.log_go, FORTH
         options[2, CHANCE], options[2, NEW_WAY] = settings.log_back, BACK
@@ -184,28 +259,38 @@ def _options(choice, options, may_touch, settings):  # type: ignore[no-untyped-d
         options[0, CHANCE] = np.log(2.0 / 3.0)
         for k in range(2):
             sign = 2 * k - 1
-            options[1 + k, CHANCE], options[1 + k, CHANGE] = np.log(1.0 / 6.0), sign * settings.faster
-            options[3 + k, CHANCE], options[3 + k, CHANGE] = settings.log_jump, sign * settings.jump
-            options[5 + k, CHANCE], options[5 + k, ASIDE] = settings.log_aside, sign
-            options[7 + k, CHANCE], options[7 + k, TURN] = settings.log_turn, sign
-        options[9, CHANCE], options[9, NEW_WAY] = settings.log_stop, STILL
-        options[10, CHANCE] = settings.log_back if way == FORTH else settings.log_forth
-        options[10, NEW_WAY] = -way
-        number = 11
-    if touch == 1:
+            options[number, CHANCE], options[number, CHANGE] = np.log(1.0 / 6.0), sign * settings.faster
+            number += 1
+            if turn == 0:
+                options[number, CHANCE], options[number, CHANGE] = settings.log_jump, sign * settings.jump
+                number += 1
+            elif turn == 1:
+                options[number, CHANCE], options[number, ASIDE] = settings.log_aside, sign
+                number += 1
+            else:
+                options[number, CHANCE], options[number, TURN] = settings.log_turn, sign
+                number += 1
+        if turn == 0:
+            options[number, CHANCE], options[number, NEW_WAY] = settings.log_stop, STILL
+            number += 1
+        elif turn == 2:
+            options[number, CHANCE] = settings.log_back if way == FORTH else settings.log_forth
+            options[number, NEW_WAY] = -way
+            number += 1
+    if touch == 1 and turn == 1:
         options[number, CHANCE], options[number, CONTACT] = settings.log_lift, 0
         number += 1
-    elif may_touch:
+    elif touch == 0 and may_touch:
         options[number, CHANCE], options[number, CONTACT] = settings.log_touch, 1
         number += 1
     return number
 
 
 @nb.njit(cache=True)
-def _children(state, choice, option, made, made_choice, count, sensor, settings):  # type: ignore[no-untyped-def]
+def _children(state, choice, option, made, made_choice, fresh, count, sensor, settings):  # type: ignore[no-untyped-def]
     """Add a hypothesis that went on in one way, once for each pattern that a new column may have; their number."""
     offset, yaw = choice[OFFSET] + int(option[ASIDE]), choice[YAW] + int(option[TURN])
-    if not (0 <= offset < sensor.charge.shape[2] and 0 <= yaw < sensor.charge.shape[0]):
+    if not (0 <= offset < sensor.lone.shape[2] and 0 <= yaw < sensor.lone.shape[0]):
         return count
     way, touch = int(option[NEW_WAY]), int(option[CONTACT])
     speed, mean = state[LOG_SPEED], state[MEAN_LOG_SPEED]
@@ -239,13 +324,14 @@ def _children(state, choice, option, made, made_choice, count, sensor, settings)
             made[count, LOG_WEIGHT] = chance
             made_choice[count, WAY], made_choice[count, OFFSET], made_choice[count, YAW] = way, offset, yaw
             made_choice[count, TOUCH], made_choice[count, SEEN], made_choice[count, COLUMNS] = touch, seen, own
+            fresh[count] = (REAR if rears == 8 else 0) | (FRONT if fronts == 8 else 0)
             count += 1
     return count
 
 
 @nb.njit(cache=True)
-def _merged(made, made_choice, parent, count, best, settings):  # type: ignore[no-untyped-def]
-    """The children that are good enough, and one of all that agree, with the sum of their weights."""
+def _merged(made, made_choice, count, best, settings):  # type: ignore[no-untyped-def]
+    """The children that are good enough, one of all that agree with the sum of their weights, and their numbers."""
     size = 64
     while size < 2 * count:
         size *= 2
@@ -274,12 +360,10 @@ def _merged(made, made_choice, parent, count, best, settings):  # type: ignore[n
         least = np.partition(weight[:number], number - settings.most_kept)[number - settings.most_kept]
     chosen = np.flatnonzero(weight[:number] >= least)
     state, choice = np.empty((len(chosen), 4)), np.empty((len(chosen), 6), dtype=np.int64)
-    parents = np.empty(len(chosen), dtype=np.int64)
     for k in range(len(chosen)):
         state[k], choice[k] = made[kept[chosen[k]]], made_choice[kept[chosen[k]]]
         state[k, LOG_WEIGHT] = best + np.log(weight[chosen[k]])
-        parents[k] = parent[kept[chosen[k]]]
-    return state, choice, parents
+    return state, choice, kept[chosen]
 
 
 @piece()
@@ -295,24 +379,47 @@ def _key(state, choice):  # type: ignore[no-untyped-def]
 
 
 @nb.njit(cache=True)
-def _drifted(state, choice, drift, measured, sensor, settings):  # type: ignore[no-untyped-def]
-    """The drifts (h, n) after a step of a steady Kalman filter."""
+def _remember(state, choice, memory, fresh, measured, temper, sensor, settings):  # type: ignore[no-untyped-def]
+    """Move the memories (h, 24 + 2 n) on: heights of dots, and level and rate of the drift by a steady filter."""
+    channels = measured.shape[0]
+    found, rest = np.empty((3, 2 * ROWS)), np.empty(channels)
     for h in range(state.shape[0]):
-        row, first = _window(state[h, PLACE], sensor)
-        pattern = _pattern(choice[h], first) if choice[h, TOUCH] == 1 else 0
-        for j in range(measured.shape[0]):
-            charge = sensor.gain[j] * sensor.charge[choice[h, YAW], row, choice[h, OFFSET], pattern, j]
-            variance = sensor.floor_pC2[j] + (settings.rough * charge) ** 2
-            residual = measured[j] - drift[h, j] - charge
-            most = LARGEST_RESIDUAL * np.sqrt(variance)
-            gain = sensor.drift_pC[j] / np.sqrt(sensor.drift_pC[j] ** 2 + variance)
-            drift[h, j] += gain * min(max(residual, -most), most)
-    return drift
+        pattern, first = _pattern(state[h, PLACE], choice[h], sensor)
+        count = _take_heights(memory[h], first, pattern, fresh[h], settings, found)
+        _evidence(
+            memory[h], state[h, PLACE], choice[h], pattern, found, count, measured, temper, sensor, settings, rest
+        )  # fmt: skip
+        row = _window(state[h, PLACE], sensor)[0]
+        lone = sensor.lone[choice[h, YAW], row, choice[h, OFFSET]]
+        for k in range(count):
+            side, across = divmod(int(found[0, k]), ROWS)
+            slot = ROWS * ((first + side) & (KEPT_HEIGHTS - 1)) + across
+            memory[h, HEIGHT + slot], memory[h, SPREAD + slot] = found[1, k], found[2, k]
+        for j in range(channels):
+            charge = 0.0
+            for k in range(count):
+                charge += sensor.gain[j] * lone[int(found[0, k]), j] * found[1, k]
+            width = np.sqrt((sensor.floor_pC2[j] + (settings.rough * charge) ** 2) / temper)
+            residual = min(max(rest[j] - charge, -LARGEST_RESIDUAL * width), LARGEST_RESIDUAL * width)
+            bend = sensor.bend_pC[j] / (width + sensor.bend_pC[j])
+            level = min(1.0, np.sqrt(2.0 * bend + sensor.drift_pC[j] ** 2 / (sensor.drift_pC[j] ** 2 + width**2)))
+            memory[h, LEVEL + j] += settings.step_s * memory[h, LEVEL + channels + j] + level * residual
+            memory[h, LEVEL + channels + j] += bend * residual / settings.step_s
 
 
 @nb.njit(cache=True)
-def predicted_charges(state, choice, sensor):  # type: ignore[no-untyped-def]
+def predicted_charges(state, choice, memory, sensor):  # type: ignore[no-untyped-def]
     """Charges (n,) of one hypothesis, without gain and drift."""
-    row, first = _window(state[PLACE], sensor)
-    pattern = _pattern(choice, first) if choice[TOUCH] == 1 else 0
-    return sensor.charge[choice[YAW], row, choice[OFFSET], pattern].astype(np.float64)
+    pattern, first = _pattern(state[PLACE], choice, sensor)
+    row = _window(state[PLACE], sensor)[0]
+    charge = np.zeros(sensor.gain.shape[0])
+    count, mean = 0, 0.0
+    for dot in range(2 * ROWS):
+        if pattern >> dot & 1:
+            side, across = divmod(dot, ROWS)
+            height = memory[HEIGHT + ROWS * ((first + side) & (KEPT_HEIGHTS - 1)) + across]
+            charge += height * sensor.lone[choice[YAW], row, choice[OFFSET], dot]
+            count, mean = count + 1, mean + height
+    if count:
+        charge += mean / count * sensor.beside[row, choice[OFFSET], pattern]
+    return charge

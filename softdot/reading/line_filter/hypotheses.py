@@ -10,10 +10,14 @@ from foundation.arrays import Floats, Ints
 from softdot.reading.line_filter.beam import (
     COLUMNS,
     FORTH,
+    HEIGHT,
     KEPT_COLUMNS,
+    LEVEL,
     OFFSET,
     PLACE,
+    RARE_STEPS,
     SEEN,
+    SPREAD,
     UNSEEN,
     YAW,
     HandMotion,
@@ -31,7 +35,9 @@ this is assumed.
 """
 BLANK = 0.3
 """Share of blank columns."""
-ROUGH_SHARE, DEGREES = 0.25, 4.0
+HEIGHT_MEAN, HEIGHT_SPREAD = 0.9, 0.3
+"""Mean and standard deviation of what a dot gives over what a nominal one would, worn ones among them: assumed."""
+ROUGH_SHARE, DEGREES = 0.15, 4.0
 """Standard deviation of a charge over the charge, and degrees of freedom of Student's t."""
 KEPT_LOG, MOST_KEPT, EARLY_KEPT = 12.0, 2500, 12_000
 SPEED_FACTOR, SPEEDS = 3.0, 9
@@ -46,11 +52,11 @@ FIRST_COLUMN = 0.85
 
 @dataclass
 class Beam:
-    """Rows of state (h, 4), choice (h, 6) and drift (h, n), as in softdot.reading.line_filter.beam."""
+    """Rows of state (h, 4), choice (h, 6) and memory (h, 24 + 2 n), as in softdot.reading.line_filter.beam."""
 
     state: Floats
     choice: Ints
-    drift: Floats
+    memory: Floats
 
 
 def settings(step_s: float) -> HandMotion:
@@ -59,22 +65,27 @@ def settings(step_s: float) -> HandMotion:
     def often(per_s: float) -> float:
         return log(min(per_s * step_s, 0.5))
 
+    def rarely(per_s: float) -> float:
+        return log(min(RARE_STEPS * per_s * step_s, 0.5))
+
     return HandMotion(
         step_s=step_s,
         faster=SPEED_SPREAD_PER_SQRT_S * sqrt(3.0 * step_s),
         jump=JUMP,
         relax=min(step_s / RELAX_S, 1.0),
         settle=min(step_s / SETTLE_S, 1.0),
-        log_jump=often(JUMPS_PER_S),
-        log_stop=often(STOPS_PER_S),
+        log_jump=rarely(JUMPS_PER_S),
+        log_stop=rarely(STOPS_PER_S),
         log_go=often(GOES_PER_S),
         log_back=often(BACKS_PER_S),
         log_forth=often(FORTHS_PER_S),
-        log_aside=often(ASIDES_PER_S),
-        log_turn=often(TURNS_PER_S),
-        log_lift=often(LIFTS_PER_S),
+        log_aside=rarely(ASIDES_PER_S),
+        log_turn=rarely(TURNS_PER_S),
+        log_lift=rarely(LIFTS_PER_S),
         log_touch=often(TOUCHES_PER_S),
         log_blank=log(BLANK),
+        height=HEIGHT_MEAN,
+        height_spread=HEIGHT_SPREAD**2,
         rough=ROUGH_SHARE,
         degrees=DEGREES,
         kept_log=KEPT_LOG,
@@ -99,7 +110,14 @@ def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) 
             posture = -0.5 * ((OFFSETS_MM[offset] / OFFSET_SPREAD_MM) ** 2 + (YAWS_DEG[yaw] / YAW_SPREAD_DEG) ** 2)
             rows.append((column_mm(table, column) - entry, speed, speed, chance + posture))
             chosen.append((FORTH, offset, yaw, 1, column + 1, pattern))
-    return Beam(np.array(rows), np.array(chosen, dtype=np.int64), np.zeros((len(rows), channels)))
+    return Beam(np.array(rows), np.array(chosen, dtype=np.int64), _memory(len(rows), np.zeros(2 * channels)))
+
+
+def _memory(count: int, drift: Floats) -> Floats:
+    """Memories (count, 24 + 2 n) in which nothing is known of any dot, with one drift (2 n)."""
+    known = np.empty((count, LEVEL + len(drift)))
+    known[:, HEIGHT:SPREAD], known[:, SPREAD:LEVEL], known[:, LEVEL:] = HEIGHT_MEAN, HEIGHT_SPREAD**2, drift
+    return known
 
 
 def _speeds(speed_mm_per_s: float) -> Floats:
@@ -109,7 +127,7 @@ def _speeds(speed_mm_per_s: float) -> Floats:
 def anywhere(table: LineTable, best: Beam, speeds: Floats) -> Beam:
     """Around the place of one hypothesis, within half a cell to each side: any two columns, near postures and speeds.
 
-    speeds (s,) : logarithms.
+    speeds (s,) : logarithms. Of the one hypothesis place, posture and drift are taken.
     """
     pitch = table.cell_pitch_mm
     places = best.state[0, PLACE] + np.arange(-0.5 * pitch, 0.5 * pitch, 0.15)
@@ -123,7 +141,7 @@ def anywhere(table: LineTable, best: Beam, speeds: Floats) -> Beam:
             own = columns & ~0xFF | pattern >> 3 | (pattern & 7) << 4
             chosen.append((FORTH, aside, yaw, 1, seen, own))
     state, choice = np.array(rows), np.array(chosen, dtype=np.int64)
-    return Beam(state, choice, np.repeat(best.drift[:1], len(rows), axis=0))
+    return Beam(state, choice, _memory(len(rows), best.memory[0, LEVEL:]))
 
 
 def _chance_of(pattern: int) -> float:

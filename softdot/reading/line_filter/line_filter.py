@@ -10,11 +10,13 @@ from softdot.reading.cells import DOTS
 from softdot.reading.line_filter.beam import (
     COLUMNS,
     KEPT_COLUMNS,
+    LEVEL,
     LOG_SPEED,
     LOG_WEIGHT,
     MOST_CHILDREN,
     OFFSET,
     PLACE,
+    RARE_STEPS,
     SEEN,
     STILL,
     TOUCH,
@@ -87,23 +89,23 @@ class LineFilter:
 
     def __post_init__(self) -> None:
         """Make room for children and products."""
-        channels = self.table.charge.shape[-1]
+        channels = self.table.lone.shape[-1]
         self._settings, self._early, self._steps = settings(self.step_s), early_settings(self.step_s), 0
         self._is_early = True
         self._room = (
             np.empty((MOST_CHILDREN, 4)), np.empty((MOST_CHILDREN, 6), dtype=np.int64),
-            np.empty(MOST_CHILDREN, dtype=np.int64),
+            np.empty(MOST_CHILDREN, dtype=np.int64), np.empty(MOST_CHILDREN, dtype=np.int64),
         )  # fmt: skip
         prior = GAIN_PRIOR_S / self.step_s * (0.3 * self.table.largest_pC) ** 2
         self._products = np.full((2, channels), prior)
         self._best = 0
-        self._safe_drift, self._safe_log_speed = self.hypotheses.drift[0], float(self.hypotheses.state[:, 1].mean())
+        self._safe_drift, self._safe_log_speed = self.hypotheses.memory[0, LEVEL:], float(self.hypotheses.state[:, 1].mean())
 
     @property
     def best(self) -> Beam:
         """The most likely hypothesis alone."""
         one, all_ = self._best, self.hypotheses
-        return Beam(all_.state[one : one + 1], all_.choice[one : one + 1], all_.drift[one : one + 1])
+        return Beam(all_.state[one : one + 1], all_.choice[one : one + 1], all_.memory[one : one + 1])
 
     @property
     def place_mm(self) -> float:
@@ -137,18 +139,18 @@ class LineFilter:
             first = self.hypotheses
             self._best = 0
             self.hypotheses = Beam(
-                *weighed(first.state, first.choice, first.drift, charge_pC, self.sensor, self._early)
+                *weighed(first.state, first.choice, first.memory, charge_pC, self.sensor, self._early)
             )
         known = self.hypotheses
-        largest = np.abs(charge_pC - known.drift[self._best]).max()
-        state, choice, drift, evidence = advance(
-            known.state, known.choice, known.drift, charge_pC, temper,
-            bool(largest > TOUCH_SHARE * self.table.largest_pC), self.sensor,
+        largest = np.abs(charge_pC - self._level(known.memory[self._best])).max()
+        state, choice, memory, evidence = advance(
+            known.state, known.choice, known.memory, charge_pC, temper,
+            bool(largest > TOUCH_SHARE * self.table.largest_pC), self._steps % RARE_STEPS, self.sensor,
             self._early if self._is_early else self._settings, self._room,
         )  # fmt: skip
         self._steps += 1
         self._is_early = self._is_early and self._steps < EARLY_STEPS and largest < EARLY_SHARE * self.table.largest_pC
-        self.hypotheses = Beam(state, choice, drift)
+        self.hypotheses = Beam(state, choice, memory)
         self.evidence += evidence
         self._best = int(np.argmax(state[:, LOG_WEIGHT]))
         self.touching = bool(choice[self._best, TOUCH])
@@ -157,12 +159,17 @@ class LineFilter:
         self._look_for_the_track(charge_pC)
         return residual
 
+    def _level(self, memory: Floats) -> Floats:
+        """The drift (n,) of each channel in a memory."""
+        return memory[LEVEL : LEVEL + self.table.lone.shape[-1]]
+
     def _learn(self, charge_pC: Floats) -> Floats:
         """Follow fit and gains by the best hypothesis; the residuals (n,) that it leaves."""
         predicted = predicted_charges(
-            self.hypotheses.state[self._best], self.hypotheses.choice[self._best], self.sensor
-        )
-        heard = charge_pC - self.hypotheses.drift[self._best]
+            self.hypotheses.state[self._best], self.hypotheses.choice[self._best], self.hypotheses.memory[self._best],
+            self.sensor,
+        )  # fmt: skip
+        heard = charge_pC - self._level(self.hypotheses.memory[self._best])
         alive, gain = self.sensor.alive, self.sensor.gain
         residual = heard - gain * predicted
         variance = self.sensor.floor_pC2 + (self._settings.rough * predicted) ** 2
@@ -173,7 +180,7 @@ class LineFilter:
             assert self._products is not None
             assert self._safe_drift is not None
             known = self.best
-            self._safe_drift = self._safe_drift + share * (known.drift[0] - self._safe_drift)
+            self._safe_drift = self._safe_drift + share * (known.memory[0, LEVEL:] - self._safe_drift)
             self._safe_log_speed += share * (float(known.state[0, LOG_SPEED]) - self._safe_log_speed)
             fade = 1.0 - self.step_s / GAIN_S
             fair = np.abs(residual) < 4.0 * np.sqrt(variance)
@@ -205,15 +212,15 @@ class LineFilter:
         self.is_lost, self._patience_s = True, PATIENCE_S
         self.losses += 1
         assert self._safe_drift is not None
-        best = replace(self.best, drift=self._safe_drift[None])
+        best = replace(self.best, memory=np.concatenate([self.best.memory[:, :LEVEL], self._safe_drift[None]], axis=1))
         fresh = anywhere(self.table, best, self._safe_log_speed + np.linspace(-1.0, 1.0, 7))
-        state, choice, drift = weighed(fresh.state, fresh.choice, fresh.drift, charge_pC, self.sensor, self._settings)
+        state, choice, memory = weighed(fresh.state, fresh.choice, fresh.memory, charge_pC, self.sensor, self._settings)
         known = self.hypotheses
         state[:, LOG_WEIGHT] += known.state[self._best, LOG_WEIGHT] - state[:, LOG_WEIGHT].max()
         self.hypotheses = Beam(
             np.concatenate([known.state, state]),
             np.concatenate([known.choice, choice]),
-            np.concatenate([known.drift, drift]),
+            np.concatenate([known.memory, memory]),
         )
 
     def ready_cells(self, at_end: bool = False) -> list[PassedCell]:

@@ -8,7 +8,7 @@ from foundation.arrays import Floats
 from foundation.errors import InputError
 from geometry.braille_standards import BrailleStandard
 from softdot.arrays.kernel import ArrayKernel
-from softdot.reading.line_filter.beam import Sensor
+from softdot.reading.line_filter.beam import LEVEL, Sensor
 from softdot.reading.line_filter.channels import Channels, first_signal, measured_channels
 from softdot.reading.line_filter.charge import ChargeBlocks
 from softdot.reading.line_filter.hypotheses import Beam, anywhere, at_the_first_column
@@ -30,8 +30,8 @@ DIRECTION_EVIDENCE, DIRECTION_COLUMNS = 25.0, 6
 """Logarithm of the evidence that decides the direction, or columns after which the better one is taken."""
 DRIFT_SHARE = 7e-4
 """Least standard deviation of the drift in a step, over the largest charge of one dot."""
-RATE_SHARE = 0.08
-"""Gain of the resting voltages over the square of that of the drifts; a quarter would be critically damped."""
+SLOPE_V_PER_S = 3e-4
+"""By how much a resting voltage is taken to change in a second."""
 CERTAIN = 0.9
 """Least probability of a cell that is given out as read."""
 
@@ -183,7 +183,7 @@ class LineReader:
         else:
             self._zero = before[max(0, self._skip - 5) : self._skip + 1].mean(axis=0)
         self._line_begin_s = self._begin_s + self._skip * samples / self._rate
-        self._done, self._rate_pC, self._leak_pC = 0, np.zeros(len(self._used)), np.zeros(len(self._used))
+        self._done = 0
         self._last = self._zero * 0.0
         self._filters = [self._filter(table, channels, samples / self._rate) for table in self._tables]
 
@@ -197,16 +197,17 @@ class LineReader:
         gain = np.abs(channels.gain)
         walk = 1e12 * channels.noise_V * np.sqrt(step_s / self._rate) / np.abs(self._circuit[1]) / gain
         drift = np.hypot(walk, DRIFT_SHARE * table.largest_pC)
+        bend = 1e12 * SLOPE_V_PER_S * step_s**2 / np.abs(self._circuit[1]) / gain
         noise = 1e12 * np.abs(self._circuit[0]) * channels.noise_V / gain
         floor = (FLOOR_SHARE * table.largest_pC) ** 2 + noise**2
         sensor = Sensor(
-            table.charge, table.within, table.dot_pitch_mm, table.cell_pitch_mm, channels.alive, np.ones(count), floor,
-            drift,
+            table.lone, table.beside, table.within, table.dot_pitch_mm, table.cell_pitch_mm, channels.alive,
+            np.ones(count), floor, drift, bend,
         )  # fmt: skip
         if channels.is_inside:
             middle = Beam(
                 np.array([[0.5 * table.cell_pitch_mm, 0.0, 0.0, 0.0]]),
-                np.array([[1, len(OFFSETS_MM) // 2, len(YAWS_DEG) // 2, 1, 0, 0]]), np.zeros((1, count)),
+                np.array([[1, len(OFFSETS_MM) // 2, len(YAWS_DEG) // 2, 1, 0, 0]]), np.zeros((1, LEVEL + 2 * count)),
             )  # fmt: skip
             start = anywhere(table, middle, np.log(channels.speed_mm_per_s) + np.linspace(-1.0, 1.0, 9))
         else:
@@ -233,19 +234,15 @@ class LineReader:
     def _take(self, charge_pC: Floats) -> None:
         """One step of all filters with the charges (n,) of a block."""
         step_s = self._blocks.samples / self._rate
-        self._leak_pC += self._rate_pC * step_s
-        charge_pC = charge_pC - self._leak_pC
         time_s = self._begin_s + (self._done + 0.5) * step_s
         better = self._better
         change = np.abs(charge_pC - self._last)[better.sensor.alive].max() / better.table.largest_pC * 1.5
         self._last = charge_pC
         way = max(abs(better.speed_mm_per_s) * step_s, change)
         temper = float(np.clip(way / CORRELATED_MM, LEAST_TEMPER, 1.0))
-        residuals = [(one.step(charge_pC, temper, time_s), one) for one in self._filters]
-        residual, better = max(residuals, key=lambda pair: pair[1].evidence)
-        floor = np.sqrt(better.sensor.floor_pC2)
-        gain = better.sensor.drift_pC / np.hypot(better.sensor.drift_pC, floor)
-        self._rate_pC += RATE_SHARE * gain**2 / step_s * np.clip(residual, -2.0 * floor, 2.0 * floor)
+        for one in self._filters:
+            one.step(charge_pC, temper, time_s)
+        better = self._better
         if self.course is not None:
             self.course.append((time_s, better.place_mm - 0.5 * better.table.dot_pitch_mm))
         if len(self._filters) > 1:

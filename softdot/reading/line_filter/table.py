@@ -33,14 +33,16 @@ HIGH = 0.98
 class LineTable:
     """Charges of two columns of dots under an array that moves towards rising place.
 
-    charge (yaw, place, offset, 64, n) in pC : of the channels in use, numbered by channels (n,). Bits 0 to 2 of a
-    pattern are the column behind, 3 to 5 the next one. within (place,) : whether the column behind is the second one
+    lone (yaw, place, offset, 6, n) in pC : of single dots, on the channels in use, numbered by channels (n,). Dots 0
+    to 2 are the column behind, 3 to 5 the next one. beside (place, offset, 64, n) : what the dots of a pattern add to
+    the sum of single ones; its bits are the dots. within (place,) : whether the column behind is the second one
     of its cell. is_mirrored : the array moves from right to left, and a cell's right column comes first. largest_pC :
     largest charge of a channel by one dot. high_pC (n,) : what one of fifty places and patterns exceeds.
     slope_pC_per_mm : root mean square of the change of charge along the line; spread_pC : of the charge about its mean.
     """
 
-    charge: Floats
+    lone: Floats
+    beside: Floats
     channels: Ints
     within: Bools
     dot_pitch_mm: float
@@ -91,20 +93,22 @@ def _kept_table(key: _Key, is_mirrored: bool) -> LineTable:
     sign = -1.0 if is_mirrored else 1.0
     lone = _lone_charges(kernel, sign * along, across, channels)
     bits = ((np.arange(KINDS_OF_CELL)[:, None] >> np.arange(DOTS)) & 1).astype(np.float64)
-    charge = bits.astype(np.float32) @ lone.astype(np.float32)
-    charge += _beside(kernel, sign * along, across, bits, channels, lone).astype(np.float32)
-    return _with_sizes(charge, channels, within, spacing, pitch, is_mirrored)
+    beside = _beside(kernel, sign * along, across, bits, channels, lone)
+    middle = len(OFFSETS_MM) // 2
+    charge = bits @ lone[len(YAWS_DEG) // 2, :, middle] + beside[:, middle]
+    return _with_sizes((lone, beside, charge), channels, within, spacing, pitch, is_mirrored)
 
 
 def _with_sizes(
-    charge: Any, channels: Ints, within: Bools, spacing: float, pitch: float, is_mirrored: bool
-) -> LineTable:
+    charges: tuple[Floats, Floats, Floats], channels: Ints, within: Bools, spacing: float, pitch: float,
+    is_mirrored: bool,
+) -> LineTable:  # fmt: skip
     """The table with the sizes of its charges, in the middle of the line and not turned."""
-    middle = charge[len(YAWS_DEG) // 2, :, len(OFFSETS_MM) // 2].astype(np.float64)
+    lone, beside, middle = charges
     change = np.diff(middle, axis=0)[within[1:] == within[:-1]] / (pitch / PLACES)
     single = middle[:, [1 << dot for dot in range(DOTS)]]
     return LineTable(
-        np.ascontiguousarray(charge), channels, within, spacing, pitch, is_mirrored, float(np.abs(single).max()),
+        np.ascontiguousarray(lone, dtype=np.float32), np.ascontiguousarray(beside, dtype=np.float32), channels, within, spacing, pitch, is_mirrored, float(np.abs(single).max()),
         float(np.sqrt(np.mean(change**2))), float(np.sqrt(np.mean((middle - middle.mean(axis=(0, 1))) ** 2))),
         _high_charge(middle.reshape(-1, len(channels))),
     )  # fmt: skip
