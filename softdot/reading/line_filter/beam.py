@@ -63,7 +63,8 @@ class HandMotion(NamedTuple):
     """Log-probabilities of a step, and constants of the weights.
 
     faster, jump : steps of the log-speed; relax, settle : shares of the way of log-speed and mean to each other in a
-    step. height, height_spread : mean and variance of the height of dots, as shares of the nominal charge. rough :
+    step. log_blank, log_dots (4,) : of a blank column, and of each other pattern, by the kind of _kind; log_unseen : of
+    one that passes without contact. height, height_spread : mean and variance of the height of dots, as shares of the nominal charge. rough :
     standard deviation of a charge over the charge; degrees : of Student's t. kept_log, most_kept : how far behind the
     best, and how many hypotheses are kept.
     """
@@ -82,7 +83,9 @@ class HandMotion(NamedTuple):
     log_turn: float
     log_lift: float
     log_touch: float
-    log_blank: float
+    log_blank: Floats
+    log_dots: Floats
+    log_unseen: float
     height: float
     height_spread: float
     rough: float
@@ -286,6 +289,17 @@ def _options(choice, options, may_touch, turn, settings):  # type: ignore[no-unt
     return number
 
 
+@piece()
+def _kind(columns, seen, number):  # type: ignore[no-untyped-def]
+    """What is known before a column: 0, 1 for the first one of a cell, behind a cell with dots or a blank one; 2, 3 for
+    the second one, behind a column with dots or a blank one.
+    """
+    before = column_of(columns, seen, number - 1) == 0
+    if number % 2:
+        return 3 if before else 2
+    return 1 if before and column_of(columns, seen, number - 2) == 0 else 0
+
+
 @nb.njit(cache=True)
 def _children(state, choice, option, made, made_choice, fresh, count, sensor, settings):  # type: ignore[no-untyped-def]
     """Add a hypothesis that went on in one way, once for each pattern that a new column may have; their number."""
@@ -313,13 +327,15 @@ def _children(state, choice, option, made, made_choice, fresh, count, sensor, se
         for b in range(fronts):
             chance, own = state[LOG_WEIGHT] + option[CHANCE], columns
             if is_new and touch == 0:
-                chance += settings.log_blank  # as much as a blank one, so that what is blank needs no lost contact
+                chance += settings.log_unseen
             if rears == 8:
+                kind = _kind(own, seen, first)
                 own = own ^ ((UNSEEN ^ a) << (4 * (seen - 1 - first)))
-                chance += settings.log_blank if a == 0 else np.log((1.0 - np.exp(settings.log_blank)) / 7.0)
+                chance += settings.log_blank[kind] if a == 0 else settings.log_dots[kind]
             if fronts == 8:
+                kind = _kind(own, seen, first + 1)
                 own = own ^ ((UNSEEN ^ b) << (4 * (seen - 2 - first)))
-                chance += settings.log_blank if b == 0 else np.log((1.0 - np.exp(settings.log_blank)) / 7.0)
+                chance += settings.log_blank[kind] if b == 0 else settings.log_dots[kind]
             made[count, PLACE], made[count, LOG_SPEED], made[count, MEAN_LOG_SPEED] = place, speed, mean
             made[count, LOG_WEIGHT] = chance
             made_choice[count, WAY], made_choice[count, OFFSET], made_choice[count, YAW] = way, offset, yaw

@@ -28,14 +28,16 @@ SPEED_SPREAD_PER_SQRT_S, JUMP, JUMPS_PER_S = 0.5, 0.35, 0.5
 """Random walk of the log-speed, its jumps, and how often each happens."""
 RELAX_S, SETTLE_S = 1.0, 2.0
 """Time in which the log-speed returns to its mean, and the mean follows the log-speed."""
-STOPS_PER_S, GOES_PER_S, BACKS_PER_S, FORTHS_PER_S = 0.3, 3.0, 0.2, 4.0
-ASIDES_PER_S, TURNS_PER_S, LIFTS_PER_S, TOUCHES_PER_S = 1.0, 0.2, 0.2, 6.0
+STOPS_PER_S, GOES_PER_S, BACKS_PER_S, FORTHS_PER_S = 0.3, 3.0, 0.3, 4.0
+ASIDES_PER_S, TURNS_PER_S, LIFTS_PER_S, TOUCHES_PER_S = 2.0, 0.2, 0.2, 6.0
 """How often a hand stops and goes on, turns back and forth, moves or turns by a step, loses and finds contact: all of
 this is assumed.
 """
 BLANK = 0.3
-"""Share of blank columns."""
-HEIGHT_MEAN, HEIGHT_SPREAD = 0.9, 0.3
+"""Share of blank columns where nothing is known."""
+BLANK_CELLS, BLANK_AGAIN, BLANK_FIRST, BLANK_SECOND = 0.18, 0.03, 0.05, 0.2
+"""Shares of cells that are blank, of those behind a blank one, and with a blank first or second column alone."""
+HEIGHT_MEAN, HEIGHT_SPREAD = 0.9, 0.25
 """Mean and standard deviation of what a dot gives over what a nominal one would, worn ones among them: assumed."""
 ROUGH_SHARE, DEGREES = 0.15, 4.0
 """Standard deviation of a charge over the charge, and degrees of freedom of Student's t."""
@@ -59,8 +61,9 @@ class Beam:
     memory: Floats
 
 
-def settings(step_s: float) -> HandMotion:
+def settings(step_s: float, is_mirrored: bool) -> HandMotion:
     """The motion of a hand in steps of a time."""
+    blank = _blank_columns(is_mirrored)
 
     def often(per_s: float) -> float:
         return log(min(per_s * step_s, 0.5))
@@ -83,7 +86,9 @@ def settings(step_s: float) -> HandMotion:
         log_turn=rarely(TURNS_PER_S),
         log_lift=rarely(LIFTS_PER_S),
         log_touch=often(TOUCHES_PER_S),
-        log_blank=log(BLANK),
+        log_blank=np.log(blank),
+        log_dots=np.log((1.0 - blank) / 7.0),
+        log_unseen=log(BLANK),
         height=HEIGHT_MEAN,
         height_spread=HEIGHT_SPREAD**2,
         rough=ROUGH_SHARE,
@@ -93,16 +98,26 @@ def settings(step_s: float) -> HandMotion:
     )
 
 
-def early_settings(step_s: float) -> HandMotion:
+def _blank_columns(is_mirrored: bool) -> Floats:
+    """Probabilities (4,) of a blank column, by what is known before it (softdot.reading.line_filter.beam)."""
+    met, other = (BLANK_SECOND, BLANK_FIRST) if is_mirrored else (BLANK_FIRST, BLANK_SECOND)
+    again = (1.0 - BLANK_AGAIN) / (1.0 - BLANK_CELLS)
+    return np.array([
+        BLANK_CELLS + met, BLANK_AGAIN + again * met, other / (1.0 - BLANK_CELLS - met),
+        BLANK_CELLS / (BLANK_CELLS + met),
+    ])  # fmt: skip
+
+
+def early_settings(step_s: float, is_mirrored: bool) -> HandMotion:
     """The motion over the first column: what is rare is left out, and more hypotheses are kept."""
     rare = dict.fromkeys(("log_jump", "log_stop", "log_back", "log_aside", "log_turn", "log_lift"), -1e9)
-    return settings(step_s)._replace(most_kept=EARLY_KEPT, **rare)
+    return settings(step_s, is_mirrored)._replace(most_kept=EARLY_KEPT, **rare)
 
 
 def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) -> Beam:
     """The array meets the first column of a line: of its cell the first or the second, any pattern but a blank."""
     entries = np.arange(NEAREST_MM, 0.5 * FARTHEST_SHARE * table.cell_pitch_mm, ENTRY_STEP_MM)
-    offsets, yaws = range(0, len(OFFSETS_MM), 2), range(2, len(YAWS_DEG) - 2, 2)
+    offsets, yaws = range(1, len(OFFSETS_MM), 2), range(2, len(YAWS_DEG) - 2, 2)
     rows, chosen = [], []
     for column, pattern in product((0, 1), range(1, 8)):
         chance = log((FIRST_COLUMN if column == 0 else 1.0 - FIRST_COLUMN) / 7.0)

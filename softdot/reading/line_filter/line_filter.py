@@ -9,7 +9,9 @@ from foundation.arrays import Floats
 from softdot.reading.cells import DOTS
 from softdot.reading.line_filter.beam import (
     COLUMNS,
+    HEIGHT,
     KEPT_COLUMNS,
+    KEPT_HEIGHTS,
     LEVEL,
     LOG_SPEED,
     LOG_WEIGHT,
@@ -17,7 +19,9 @@ from softdot.reading.line_filter.beam import (
     OFFSET,
     PLACE,
     RARE_STEPS,
+    ROWS,
     SEEN,
+    SPREAD,
     STILL,
     TOUCH,
     UNSEEN,
@@ -47,6 +51,10 @@ GAIN_S, GAIN_PRIOR_S, WIDEST_GAIN = 8.0, 2.0, 2.0
 """Memory of the gains that are followed, weight of the first ones, and how far they may go from these."""
 EARLY_SHARE, EARLY_STEPS = 0.6, 40
 """More hypotheses are kept until a charge reaches this share of the largest one of a dot, for so many steps at most."""
+HEIGHTS_PRIOR, HEIGHTS_MEMORY, KNOWN_SPREAD, HEIGHT_SPREADS = 10.0, 60.0, 0.03, (0.1**2, 0.4**2)
+"""Of the heights of a line's dots: weight of what was assumed and memory, both in dots, largest variance of one that
+counts, and least and largest variance of all.
+"""
 NEAR_MM = 3.0
 """Way from the middle of a cell within which the fit counts for it."""
 
@@ -90,7 +98,7 @@ class LineFilter:
     def __post_init__(self) -> None:
         """Make room for children and products."""
         channels = self.table.lone.shape[-1]
-        self._settings, self._early, self._steps = settings(self.step_s), early_settings(self.step_s), 0
+        self._settings, self._early, self._steps = settings(self.step_s, self.table.is_mirrored), early_settings(self.step_s, self.table.is_mirrored), 0
         self._is_early = True
         self._room = (
             np.empty((MOST_CHILDREN, 4)), np.empty((MOST_CHILDREN, 6), dtype=np.int64),
@@ -99,6 +107,9 @@ class LineFilter:
         prior = GAIN_PRIOR_S / self.step_s * (0.3 * self.table.largest_pC) ** 2
         self._products = np.full((2, channels), prior)
         self._best = 0
+        first, second = self._settings.height, self._settings.height_spread + self._settings.height**2
+        self._prior_heights = HEIGHTS_PRIOR * np.array([1.0, first, second])
+        self._heights = self._prior_heights.copy()
         self._safe_drift, self._safe_log_speed = self.hypotheses.memory[0, LEVEL:], float(self.hypotheses.state[:, 1].mean())
 
     @property
@@ -141,7 +152,7 @@ class LineFilter:
             self.hypotheses = Beam(
                 *weighed(first.state, first.choice, first.memory, charge_pC, self.sensor, self._early)
             )
-        known = self.hypotheses
+        known, seen = self.hypotheses, self.columns_seen
         largest = np.abs(charge_pC - self._level(known.memory[self._best])).max()
         state, choice, memory, evidence = advance(
             known.state, known.choice, known.memory, charge_pC, temper,
@@ -154,6 +165,7 @@ class LineFilter:
         self.evidence += evidence
         self._best = int(np.argmax(state[:, LOG_WEIGHT]))
         self.touching = bool(choice[self._best, TOUCH])
+        self._learn_heights(seen)
         residual = self._learn(charge_pC)
         self._note_time(time_s)
         self._look_for_the_track(charge_pC)
@@ -162,6 +174,22 @@ class LineFilter:
     def _level(self, memory: Floats) -> Floats:
         """The drift (n,) of each channel in a memory."""
         return memory[LEVEL : LEVEL + self.table.lone.shape[-1]]
+
+    def _learn_heights(self, seen: int) -> None:
+        """Follow mean and spread of the heights of this line's dots, by the column that left the window."""
+        if self.columns_seen <= max(seen, 2) or self.fit > FOUND_FIT:
+            return
+        number = self.columns_seen - 3
+        pattern = int(_column(self.best.choice[:, COLUMNS], self.best.choice[:, SEEN], number)[0])
+        slots = [ROWS * (number % KEPT_HEIGHTS) + row for row in range(ROWS) if 0 < pattern < UNSEEN and pattern >> row & 1]
+        for slot in slots:
+            height, spread = self.best.memory[0, [HEIGHT + slot, SPREAD + slot]]
+            if spread < KNOWN_SPREAD:
+                own = np.array([1.0, height, height**2 + spread])
+                self._heights += own - (self._heights - self._prior_heights) / HEIGHTS_MEMORY
+        count, first, second = self._heights
+        spread = float(np.clip(second / count - (first / count) ** 2, *HEIGHT_SPREADS))
+        self._settings = self._settings._replace(height=float(first / count), height_spread=spread)
 
     def _learn(self, charge_pC: Floats) -> Floats:
         """Follow fit and gains by the best hypothesis; the residuals (n,) that it leaves."""

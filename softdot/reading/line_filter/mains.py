@@ -5,6 +5,8 @@ Each channel has complex amplitudes z of the hum and of its harmonics, all with 
 and the frequency w follows the turn of z that is common to all channels, in a loop that is critically damped.
 """
 
+from typing import Any
+
 import numba as nb
 import numpy as np
 
@@ -18,6 +20,8 @@ BANDWIDTH_HZ = 0.5
 """Of the amplitudes that are followed."""
 LEAST_PEAK, ALIKE = 6.0, 0.9
 """Least power of a line over the median of the powers around it, and least share of it with one phase."""
+PARTS, STEADY = 4, 0.4
+"""Parts of the time, and least size of hum in one of them over that in another."""
 FREQUENCY, PHASE = 0, 1
 """Places in the state: angular frequency per sample and phase."""
 
@@ -43,7 +47,16 @@ def hum_frequency_Hz(voltage_V: Floats, sampling_Hz: float) -> float | None:
         return None
     left, middle, right = np.log(power[peak - 1 : peak + 2])
     bend = left - 2.0 * middle + right
-    return float(frequency[peak] + (0.5 * (left - right) / bend if bend < 0.0 else 0.0) * (frequency[1] - frequency[0]))
+    found = frequency[peak] + (0.5 * (left - right) / bend if bend < 0.0 else 0.0) * (frequency[1] - frequency[0])
+    return float(found) if _is_steady(voltage_V, 2.0 * np.pi * found / sampling_Hz, lines[peak]) else None
+
+
+def _is_steady(voltage_V: Floats, per_sample: float, line: Any) -> bool:
+    """Whether a line (n,) of the spectrum is there all the time, as hum is and dots that pass are not."""
+    turning = np.exp(-1j * per_sample * np.arange(len(voltage_V)))[:, None]
+    common = ((voltage_V - voltage_V.mean(axis=0)) * turning) @ np.conj(line)
+    size = [abs(part.mean()) for part in np.array_split(common, PARTS)]
+    return min(size) > STEADY * max(size)
 
 
 def hum_state(voltage_V: Floats, sampling_Hz: float, frequency_Hz: float | None) -> tuple[Floats, Floats]:
