@@ -182,46 +182,59 @@ def advance(state, choice, memory, measured, temper, may_touch, turn, sensor, se
     room : four arrays for children, state (m, 4), choice (m, 6), number of the parent (m,) and bits of new columns.
     """
     made, made_choice, parent, fresh = room
-    count, best = 0, -np.inf
+    count = 0
     top = state[:, LOG_WEIGHT].max()
     options = np.empty((MOST_OPTIONS, 6))
-    found, rest = np.empty((3, 2 * ROWS)), np.empty(measured.shape[0])
     for h in range(state.shape[0]):
-        number = _options(choice[h], options, may_touch, turn, settings)
-        for one in range(number):
+        for one in range(_options(choice[h], options, may_touch, turn, settings)):
             if state[h, LOG_WEIGHT] + options[one, CHANCE] < top - settings.kept_log or count > MOST_CHILDREN - 65:
                 continue
             begin = count
             count = _children(state[h], choice[h], options[one], made, made_choice, fresh, count, sensor, settings)
-            for child in range(begin, count):
-                parent[child] = h
-                pattern, first = _pattern(made[child, PLACE], made_choice[child], sensor)
-                dots = _take_heights(memory[h], first, pattern, fresh[child], settings, found)
-                made[child, LOG_WEIGHT] += _evidence(
-                    memory[h], made[child, PLACE], made_choice[child], pattern, found, dots, measured, temper, sensor,
-                    settings, rest,
-                )  # fmt: skip
-                best = max(best, made[child, LOG_WEIGHT])
-    kept_state, kept_choice, chosen = _merged(made, made_choice, count, best, settings)
-    kept_memory = memory[parent[chosen]]
+            parent[begin:count] = h
+    merged = _merged(made, made_choice, count, top)
+    weight = _weigh(made, made_choice, memory, parent, fresh, merged, measured, temper, sensor, settings)
+    chosen = merged[_best_ones(weight, settings)]
+    kept_state, kept_choice, kept_memory = made[chosen], made_choice[chosen], memory[parent[chosen]]
     _remember(kept_state, kept_choice, kept_memory, fresh[chosen], measured, temper, sensor, settings)
     return kept_state, kept_choice, kept_memory, _log_sum(kept_state[:, LOG_WEIGHT]) - _log_sum(state[:, LOG_WEIGHT])
 
 
 @nb.njit(cache=True)
+def _weigh(made, made_choice, memory, parent, fresh, merged, measured, temper, sensor, settings):  # type: ignore[no-untyped-def]
+    """Add the evidence of the charges measured (n,) to those of the children that are merged (k,): their weights (k,)."""
+    found, rest = np.empty((3, 2 * ROWS)), np.empty(measured.shape[0])
+    weight = np.empty(len(merged))
+    for k in range(len(merged)):
+        child = merged[k]
+        pattern, first = _pattern(made[child, PLACE], made_choice[child], sensor)
+        own = memory[parent[child]]
+        dots = _take_heights(own, first, pattern, fresh[child], settings, found)
+        made[child, LOG_WEIGHT] += _evidence(
+            own, made[child, PLACE], made_choice[child], pattern, found, dots, measured, temper, sensor, settings, rest
+        )  # fmt: skip
+        weight[k] = made[child, LOG_WEIGHT]
+    return weight
+
+
+@nb.njit(cache=True)
+def _best_ones(weight, settings):  # type: ignore[no-untyped-def]
+    """Numbers of the weights that are near enough to the best, and not more than may be kept."""
+    least = weight.max() - settings.kept_log
+    if len(weight) > settings.most_kept:
+        rank = len(weight) - settings.most_kept
+        least = max(least, np.partition(weight, rank)[rank])
+    return np.flatnonzero(weight >= least)
+
+
+@nb.njit(cache=True)
 def weighed(state, choice, memory, measured, sensor, settings):  # type: ignore[no-untyped-def]
     """Beam after they were weighed by the charges measured (n,), without a motion."""
-    made = state.copy()
-    found, rest = np.empty((3, 2 * ROWS)), np.empty(measured.shape[0])
-    for h in range(state.shape[0]):
-        pattern, first = _pattern(made[h, PLACE], choice[h], sensor)
-        dots = _take_heights(memory[h], first, pattern, 0, settings, found)
-        made[h, LOG_WEIGHT] += _evidence(
-            memory[h], made[h, PLACE], choice[h], pattern, found, dots, measured, 1.0, sensor, settings, rest
-        )  # fmt: skip
-    best = made[:, LOG_WEIGHT].max()
-    kept_state, kept_choice, chosen = _merged(made, choice, len(made), best, settings)
-    return kept_state, kept_choice, memory[chosen]
+    made, every = state.copy(), np.arange(len(state))
+    known = np.zeros(len(state), dtype=np.int64)
+    weight = _weigh(made, choice, memory, every, known, every, measured, 1.0, sensor, settings)
+    chosen = _best_ones(weight, settings)
+    return made[chosen], choice[chosen], memory[chosen]
 
 
 @nb.njit(cache=True)
@@ -346,40 +359,35 @@ def _children(state, choice, option, made, made_choice, fresh, count, sensor, se
 
 
 @nb.njit(cache=True)
-def _merged(made, made_choice, count, best, settings):  # type: ignore[no-untyped-def]
-    """The children that are good enough, one of all that agree with the sum of their weights, and their numbers."""
+def _merged(made, made_choice, count, top):  # type: ignore[no-untyped-def]
+    """Numbers of the children that stand for all that agree: the likeliest, with the weighed mean of the motions."""
     size = 64
     while size < 2 * count:
         size *= 2
     slots = np.full(size, -1, dtype=np.int64)
     keys, kept = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64)
-    weight = np.empty(count)
+    total, most = np.zeros((count, 4)), np.empty(count)
     number = 0
     for child in range(count):
-        if made[child, LOG_WEIGHT] < best - settings.kept_log:
-            continue
         key = _key(made[child], made_choice[child])
         slot = key & (size - 1)
         while slots[slot] >= 0 and keys[slots[slot]] != key:
             slot = (slot + 1) & (size - 1)
-        own = np.exp(made[child, LOG_WEIGHT] - best)
+        own = np.exp(made[child, LOG_WEIGHT] - top)
         if slots[slot] < 0:
-            slots[slot], keys[number], kept[number], weight[number] = number, key, child, own
+            slots[slot], keys[number], kept[number], most[number] = number, key, child, own
             number += 1
-        else:
-            same = slots[slot]
-            weight[same] += own
-            if made[child, LOG_WEIGHT] > made[kept[same], LOG_WEIGHT]:
-                kept[same] = child
-    least = 0.0
-    if number > settings.most_kept:
-        least = np.partition(weight[:number], number - settings.most_kept)[number - settings.most_kept]
-    chosen = np.flatnonzero(weight[:number] >= least)
-    state, choice = np.empty((len(chosen), 4)), np.empty((len(chosen), 6), dtype=np.int64)
-    for k in range(len(chosen)):
-        state[k], choice[k] = made[kept[chosen[k]]], made_choice[kept[chosen[k]]]
-        state[k, LOG_WEIGHT] = best + np.log(weight[chosen[k]])
-    return state, choice, kept[chosen]
+        same = slots[slot]
+        if own > most[same]:
+            kept[same], most[same] = child, own
+        for part in range(LOG_WEIGHT):
+            total[same, part] += own * made[child, part]
+        total[same, LOG_WEIGHT] += own
+    for k in range(number):
+        for part in range(LOG_WEIGHT):
+            made[kept[k], part] = total[k, part] / total[k, LOG_WEIGHT]
+        made[kept[k], LOG_WEIGHT] = top + np.log(total[k, LOG_WEIGHT])
+    return kept[:number]
 
 
 @piece()

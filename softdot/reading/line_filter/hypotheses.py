@@ -41,7 +41,7 @@ HEIGHT_MEAN, HEIGHT_SPREAD = 0.9, 0.25
 """Mean and standard deviation of what a dot gives over what a nominal one would, worn ones among them: assumed."""
 ROUGH_SHARE, DEGREES = 0.15, 4.0
 """Standard deviation of a charge over the charge, and degrees of freedom of Student's t."""
-KEPT_LOG, MOST_KEPT, EARLY_KEPT = 12.0, 2500, 12_000
+KEPT_LOG, MOST_KEPT, EARLY_KEPT = 11.0, 1500, 12_000
 SPEED_FACTOR, SPEEDS = 3.0, 9
 """Factor about a rough speed within which speeds are tried, and their number."""
 FARTHEST_SHARE, NEAREST_MM, ENTRY_STEP_MM = 1.0, 0.4, 0.2

@@ -22,7 +22,7 @@ CHECK_S, KEPT_QUIET_S = 0.25, 1.5
 """Time between looks for a line that begins, and how much of the silence before it is kept."""
 LEAST_S, LEAST_WAY_MM, MOST_S = 1.0, 25.0, 10.0
 """What is heard of a line before its channels are measured: a time and a way at least, or a longer time."""
-BLOCK_MM, LONGEST_BLOCK_S = 0.25, 0.05
+BLOCK_MM, LONGEST_BLOCK_S = 0.4, 0.05
 """Way and time that charges are averaged over, at most."""
 CORRELATED_MM, LEAST_TEMPER = 0.8, 0.03
 """Way over which errors of the kernel are alike, so that it counts as one measurement; least share of one in a step."""
