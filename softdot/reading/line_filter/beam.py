@@ -12,7 +12,7 @@ import numba as nb
 import numpy as np
 
 from foundation.arrays import Bools, Floats
-from solve.compiled import piece
+from solve.compiled import MATH, piece
 
 PLACE, LOG_SPEED, MEAN_LOG_SPEED, LOG_WEIGHT = range(4)
 WAY, OFFSET, YAW, TOUCH, SEEN, COLUMNS = range(6)
@@ -114,8 +114,8 @@ def _window(place, sensor):  # type: ignore[no-untyped-def]
 
 
 @piece()
-def _take_heights(memory, first, pattern, fresh, settings, found):  # type: ignore[no-untyped-def]
-    """Fill number, height and spread (3, 6) of the dots of a pattern in the window, and return how many these are."""
+def _take_heights(memory, h, first, pattern, fresh, settings, found):  # type: ignore[no-untyped-def]
+    """Fill number, height and spread (4, 6) of the dots of a pattern in the window, and return how many these are."""
     count = 0
     for side in range(2):
         slot = ROWS * ((first + side) & (KEPT_HEIGHTS - 1))
@@ -126,51 +126,49 @@ def _take_heights(memory, first, pattern, fresh, settings, found):  # type: igno
                 if fresh >> side & 1:
                     found[1, count], found[2, count] = settings.height, settings.height_spread
                 else:
-                    found[1, count], found[2, count] = memory[HEIGHT + slot + row], memory[SPREAD + slot + row]
+                    found[1, count], found[2, count] = memory[h, HEIGHT + slot + row], memory[h, SPREAD + slot + row]
                 count += 1
     return count
 
 
-@piece()
-def _evidence(memory, place, choice, pattern, found, count, measured, temper, sensor, settings, rest):  # type: ignore[no-untyped-def]
-    """Log-likelihood of the charges measured (n,), channel after channel.
+@piece(MATH)
+def _evidence(memory, h, at, pattern, found, count, measured, temper, sensor, settings, rest):  # type: ignore[no-untyped-def]
+    """Log-likelihood of the charges measured (n,), channel after channel; at : yaw, row and offset in the table.
 
-    Heights and spreads of the dots that were found (3, count) are moved on by the Kalman filter; rest (n,) is what is
+    Heights and spreads of the dots that were found (4, count) are moved on by the Kalman filter; rest (n,) is what is
     left of the charges but for single dots. Student's t, whose scale grows with the charge; temper weakens it.
     """
     channels = measured.shape[0]
-    row = _window(place, sensor)[0]
-    lone = sensor.lone[choice[YAW], row, choice[OFFSET]]
-    beside = sensor.beside[row, choice[OFFSET], pattern]
+    yaw, row, offset = at
     mean = 0.0
     for k in range(count):
         mean += found[1, k]
     mean = mean / count if count else 0.0
     widths, spreads, tails = 1.0, 1.0, 1.0
     for j in range(channels):
-        rest[j] = measured[j] - memory[LEVEL + j] - settings.step_s * memory[LEVEL + channels + j]
+        rest[j] = measured[j] - memory[h, LEVEL + j] - settings.step_s * memory[h, LEVEL + channels + j]
         if not sensor.alive[j]:
             continue
         gain = sensor.gain[j]
-        more, charge, spread = gain * mean * beside[j], 0.0, 0.0
+        more, charge, spread = gain * mean * sensor.beside[row, offset, pattern, j], 0.0, 0.0
         for k in range(count):
-            one = gain * lone[int(found[0, k]), j]
+            one = gain * sensor.lone[yaw, row, offset, int(found[0, k]), j]
+            found[3, k] = one
             charge += one * found[1, k]
             spread += one * one * found[2, k]
         rest[j] -= more
         residual = rest[j] - charge
         variance = sensor.floor_pC2[j] + (settings.rough * (charge + more)) ** 2
-        unit = residual * residual / (variance + temper * spread)
+        whole = variance + temper * spread
+        unit = residual * residual / (settings.degrees * whole)
         widths *= variance
-        spreads *= 1.0 + temper * spread / variance
-        tails *= 1.0 + unit / settings.degrees
-        if count:
-            believed = min(1.0, (settings.degrees + 1.0) / (settings.degrees + unit))
-            share = temper / (variance + temper * spread)
-            for k in range(count):
-                own = gain * lone[int(found[0, k]), j] * found[2, k] * share
-                found[1, k] += believed * own * residual
-                found[2, k] = max(found[2, k] * (1.0 - own * gain * lone[int(found[0, k]), j]), LEAST_SPREAD)
+        spreads *= whole / variance
+        tails *= 1.0 + unit
+        believed = min(1.0, (1.0 + 1.0 / settings.degrees) / (1.0 + unit)) * residual
+        for k in range(count):
+            own = found[3, k] * found[2, k] * temper / whole
+            found[1, k] += own * believed
+            found[2, k] = max(found[2, k] * (1.0 - own * found[3, k]), LEAST_SPREAD)
     return -0.5 * temper * (np.log(widths) + (settings.degrees + 1.0) * np.log(tails)) - 0.5 * np.log(spreads)
 
 
@@ -184,14 +182,23 @@ def advance(state, choice, memory, measured, temper, may_touch, turn, sensor, se
     made, made_choice, parent, fresh = room
     count = 0
     top = state[:, LOG_WEIGHT].max()
-    options = np.empty((MOST_OPTIONS, 6))
+    options = np.empty((2, 3, MOST_OPTIONS, 6))
+    for touch in range(2):
+        for way in range(3):
+            _fill_options(options[touch, way], way - 1, touch, may_touch, turn, settings)
     for h in range(state.shape[0]):
-        for one in range(_options(choice[h], options, may_touch, turn, settings)):
-            if state[h, LOG_WEIGHT] + options[one, CHANCE] < top - settings.kept_log or count > MOST_CHILDREN - 65:
+        touch, way = choice[h, TOUCH], choice[h, WAY] + 1
+        for one in range(MOST_OPTIONS):
+            if state[h, LOG_WEIGHT] + options[touch, way, one, CHANCE] < top - settings.kept_log:
                 continue
+            if count > MOST_CHILDREN - 65:
+                break
             begin = count
-            count = _children(state[h], choice[h], options[one], made, made_choice, fresh, count, sensor, settings)
-            parent[begin:count] = h
+            count = _children(
+                state, choice, h, options, touch, way, one, made, made_choice, fresh, count, sensor, settings
+            )  # fmt: skip
+            for child in range(begin, count):
+                parent[child] = h
     merged = _merged(made, made_choice, count, top)
     weight = _weigh(made, made_choice, memory, parent, fresh, merged, measured, temper, sensor, settings)
     chosen = merged[_best_ones(weight, settings)]
@@ -203,15 +210,15 @@ def advance(state, choice, memory, measured, temper, may_touch, turn, sensor, se
 @nb.njit(cache=True)
 def _weigh(made, made_choice, memory, parent, fresh, merged, measured, temper, sensor, settings):  # type: ignore[no-untyped-def]
     """Add the evidence of the charges measured (n,) to those of the children that are merged (k,): their weights (k,)."""
-    found, rest = np.empty((3, 2 * ROWS)), np.empty(measured.shape[0])
+    found, rest = np.empty((4, 2 * ROWS)), np.empty(measured.shape[0])
     weight = np.empty(len(merged))
     for k in range(len(merged)):
         child = merged[k]
-        pattern, first = _pattern(made[child, PLACE], made_choice[child], sensor)
-        own = memory[parent[child]]
-        dots = _take_heights(own, first, pattern, fresh[child], settings, found)
+        row, first, pattern = _pattern(made[child, PLACE], made_choice, child, sensor)
+        at = (made_choice[child, YAW], row, made_choice[child, OFFSET])
+        dots = _take_heights(memory, parent[child], first, pattern, fresh[child], settings, found)
         made[child, LOG_WEIGHT] += _evidence(
-            own, made[child, PLACE], made_choice[child], pattern, found, dots, measured, temper, sensor, settings, rest
+            memory, parent[child], at, pattern, found, dots, measured, temper, sensor, settings, rest
         )  # fmt: skip
         weight[k] = made[child, LOG_WEIGHT]
     return weight
@@ -244,24 +251,23 @@ def _log_sum(weights):  # type: ignore[no-untyped-def]
 
 
 @piece()
-def _pattern(place, choice, sensor):  # type: ignore[no-untyped-def]
-    """The pattern of both columns in the window, and the number of the one behind.
+def _pattern(place, choice, h, sensor):  # type: ignore[no-untyped-def]
+    """Row of the table, number of the column behind, and the pattern of both columns in the window.
 
     What passed without contact counts as blank, and so does everything without contact.
     """
-    first = _window(place, sensor)[1]
-    if choice[TOUCH] == 0:
-        return 0, first
-    rear = column_of(choice[COLUMNS], choice[SEEN], first)
-    front = column_of(choice[COLUMNS], choice[SEEN], first + 1)
-    return (rear & 7) | (front & 7) << 3, first
+    row, first = _window(place, sensor)
+    if choice[h, TOUCH] == 0:
+        return row, first, 0
+    rear = column_of(choice[h, COLUMNS], choice[h, SEEN], first)
+    front = column_of(choice[h, COLUMNS], choice[h, SEEN], first + 1)
+    return row, first, (rear & 7) | (front & 7) << 3
 
 
 @nb.njit(cache=True)
-def _options(choice, options, may_touch, turn, settings):  # type: ignore[no-untyped-def]
-    """Fill the ways in which a hypothesis may go on, and return their number."""
-    way, touch = choice[WAY], choice[TOUCH]
-    options[:, CHANGE] = 0.0
+def _fill_options(options, way, touch, may_touch, turn, settings):  # type: ignore[no-untyped-def]
+    """Fill the ways (12, 6) in which a hypothesis may go on; those that it has not have no chance."""
+    options[:, CHANCE], options[:, CHANGE] = -np.inf, 0.0
     options[:, NEW_WAY] = way
     options[:, ASIDE:CONTACT] = 0
     options[:, CONTACT] = touch
@@ -295,11 +301,8 @@ def _options(choice, options, may_touch, turn, settings):  # type: ignore[no-unt
             number += 1
     if touch == 1 and turn == 1:
         options[number, CHANCE], options[number, CONTACT] = settings.log_lift, 0
-        number += 1
     elif touch == 0 and may_touch:
         options[number, CHANCE], options[number, CONTACT] = settings.log_touch, 1
-        number += 1
-    return number
 
 
 @piece()
@@ -313,20 +316,21 @@ def _kind(columns, seen, number):  # type: ignore[no-untyped-def]
     return 1 if before and column_of(columns, seen, number - 2) == 0 else 0
 
 
-@nb.njit(cache=True)
-def _children(state, choice, option, made, made_choice, fresh, count, sensor, settings):  # type: ignore[no-untyped-def]
-    """Add a hypothesis that went on in one way, once for each pattern that a new column may have; their number."""
-    offset, yaw = choice[OFFSET] + int(option[ASIDE]), choice[YAW] + int(option[TURN])
+@piece()
+def _children(state, choice, h, options, touch, way, one, made, made_choice, fresh, count, sensor, settings):  # type: ignore[no-untyped-def]
+    """Add hypothesis h as it went on in one way, once for each pattern that a new column may have; their number."""
+    option = options[touch, way, one]
+    offset, yaw = choice[h, OFFSET] + int(option[ASIDE]), choice[h, YAW] + int(option[TURN])
     if not (0 <= offset < sensor.lone.shape[2] and 0 <= yaw < sensor.lone.shape[0]):
         return count
     way, touch = int(option[NEW_WAY]), int(option[CONTACT])
-    speed, mean = state[LOG_SPEED], state[MEAN_LOG_SPEED]
+    speed, mean = state[h, LOG_SPEED], state[h, MEAN_LOG_SPEED]
     if way != STILL:
-        speed = mean if choice[WAY] == STILL else speed + settings.relax * (mean - speed) + option[CHANGE]
+        speed = mean if choice[h, WAY] == STILL else speed + settings.relax * (mean - speed) + option[CHANGE]
         mean += settings.settle * (speed - mean)
-    place = state[PLACE] + way * np.exp(speed) * settings.step_s
+    place = state[h, PLACE] + way * np.exp(speed) * settings.step_s
     first = _window(place, sensor)[1]
-    columns, seen = choice[COLUMNS], choice[SEEN]
+    columns, seen = choice[h, COLUMNS], choice[h, SEEN]
     while seen <= first:
         columns, seen = columns << 4 | UNSEEN, seen + 1
     is_new = seen == first + 1
@@ -338,7 +342,7 @@ def _children(state, choice, option, made, made_choice, fresh, count, sensor, se
     fronts = 8 if touch == 1 and front == UNSEEN else 1
     for a in range(rears):
         for b in range(fronts):
-            chance, own = state[LOG_WEIGHT] + option[CHANCE], columns
+            chance, own = state[h, LOG_WEIGHT] + option[CHANCE], columns
             if is_new and touch == 0:
                 chance += settings.log_unseen
             if rears == 8:
@@ -406,15 +410,12 @@ def _key(state, choice):  # type: ignore[no-untyped-def]
 def _remember(state, choice, memory, fresh, measured, temper, sensor, settings):  # type: ignore[no-untyped-def]
     """Move the memories (h, 24 + 2 n) on: heights of dots, and level and rate of the drift by a steady filter."""
     channels = measured.shape[0]
-    found, rest = np.empty((3, 2 * ROWS)), np.empty(channels)
+    found, rest = np.empty((4, 2 * ROWS)), np.empty(channels)
     for h in range(state.shape[0]):
-        pattern, first = _pattern(state[h, PLACE], choice[h], sensor)
-        count = _take_heights(memory[h], first, pattern, fresh[h], settings, found)
-        _evidence(
-            memory[h], state[h, PLACE], choice[h], pattern, found, count, measured, temper, sensor, settings, rest
-        )  # fmt: skip
-        row = _window(state[h, PLACE], sensor)[0]
-        lone = sensor.lone[choice[h, YAW], row, choice[h, OFFSET]]
+        row, first, pattern = _pattern(state[h, PLACE], choice, h, sensor)
+        yaw, offset = choice[h, YAW], choice[h, OFFSET]
+        count = _take_heights(memory, h, first, pattern, fresh[h], settings, found)
+        _evidence(memory, h, (yaw, row, offset), pattern, found, count, measured, temper, sensor, settings, rest)
         for k in range(count):
             side, across = divmod(int(found[0, k]), ROWS)
             slot = ROWS * ((first + side) & (KEPT_HEIGHTS - 1)) + across
@@ -422,7 +423,7 @@ def _remember(state, choice, memory, fresh, measured, temper, sensor, settings):
         for j in range(channels):
             charge = 0.0
             for k in range(count):
-                charge += sensor.gain[j] * lone[int(found[0, k]), j] * found[1, k]
+                charge += sensor.gain[j] * sensor.lone[yaw, row, offset, int(found[0, k]), j] * found[1, k]
             width = np.sqrt((sensor.floor_pC2[j] + (settings.rough * charge) ** 2) / temper)
             residual = min(max(rest[j] - charge, -LARGEST_RESIDUAL * width), LARGEST_RESIDUAL * width)
             bend = sensor.bend_pC[j] / (width + sensor.bend_pC[j])
@@ -433,17 +434,17 @@ def _remember(state, choice, memory, fresh, measured, temper, sensor, settings):
 
 @nb.njit(cache=True)
 def predicted_charges(state, choice, memory, sensor):  # type: ignore[no-untyped-def]
-    """Charges (n,) of one hypothesis, without gain and drift."""
-    pattern, first = _pattern(state[PLACE], choice, sensor)
-    row = _window(state[PLACE], sensor)[0]
+    """Charges (n,) of the first hypothesis, without gain and drift."""
+    row, first, pattern = _pattern(state[0, PLACE], choice, 0, sensor)
+    yaw, offset = choice[0, YAW], choice[0, OFFSET]
     charge = np.zeros(sensor.gain.shape[0])
     count, mean = 0, 0.0
     for dot in range(2 * ROWS):
         if pattern >> dot & 1:
             side, across = divmod(dot, ROWS)
-            height = memory[HEIGHT + ROWS * ((first + side) & (KEPT_HEIGHTS - 1)) + across]
-            charge += height * sensor.lone[choice[YAW], row, choice[OFFSET], dot]
+            height = memory[0, HEIGHT + ROWS * ((first + side) & (KEPT_HEIGHTS - 1)) + across]
+            charge += height * sensor.lone[yaw, row, offset, dot]
             count, mean = count + 1, mean + height
     if count:
-        charge += mean / count * sensor.beside[row, choice[OFFSET], pattern]
+        charge += mean / count * sensor.beside[row, offset, pattern]
     return charge

@@ -193,10 +193,7 @@ class LineFilter:
 
     def _learn(self, charge_pC: Floats) -> Floats:
         """Follow fit and gains by the best hypothesis; the residuals (n,) that it leaves."""
-        predicted = predicted_charges(
-            self.hypotheses.state[self._best], self.hypotheses.choice[self._best], self.hypotheses.memory[self._best],
-            self.sensor,
-        )  # fmt: skip
+        predicted = predicted_charges(self.best.state, self.best.choice, self.best.memory, self.sensor)
         heard = charge_pC - self._level(self.hypotheses.memory[self._best])
         alive, gain = self.sensor.alive, self.sensor.gain
         residual = heard - gain * predicted
