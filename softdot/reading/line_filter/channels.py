@@ -28,6 +28,8 @@ WIDEST_GAIN = 1.5
 """Largest ratio of the gain of a channel and the common one that is taken from the first seconds."""
 BELIEVED = 0.5
 """Exponent of that ratio: few dots have passed in the first seconds, and not all in the middle of their row."""
+DRIFTING, ROUNDS = 0.7, 30
+"""Share of the charges that a drift must leave to be believed, and rounds in which it is found."""
 SMOOTHED_S = 0.006
 """Time over which charges are averaged before their change is taken."""
 
@@ -36,13 +38,14 @@ SMOOTHED_S = 0.006
 class Channels:
     """The channels (n,) of the first seconds.
 
-    resting_V, noise_V; gain : charge over that of the kernel, with the sign of the polarity; alive. onset : number of
+    resting_V, noise_V; slope_V_per_s : of a resting voltage that drifts, without sign; gain : charge over that of the kernel, with the sign of the polarity; alive. onset : number of
     the first sample with a signal, which is inside : a signal was there from the first sample on. speed_mm_per_s :
     roughly.
     """
 
     resting_V: Floats
     noise_V: Floats
+    slope_V_per_s: Floats
     gain: Floats
     alive: Bools
     onset: int
@@ -82,9 +85,28 @@ def measured_channels(
     flat = voltage_V - resting
     leaked = np.cumsum(flat, axis=0) * step_s / resistance
     charge = 1e12 * (capacitance * flat + leaked)[max(onset, 0) :]
+    bend = np.zeros(charge.shape[1]) if is_inside else _bend_pC_per_s2(charge, step_s)
+    charge -= 0.5 * bend * (step_s * np.arange(len(charge))[:, None]) ** 2
     loud = _loudness(flat[max(onset, 0) :], noise, step_s)
     gain, alive = _gains(charge, loud, is_inside, table, places)
-    return Channels(resting, noise, gain, alive, onset, is_inside, _speed(charge * np.sign(gain), step_s, alive, table))
+    speed = _speed(charge * np.sign(gain), step_s, alive, table)
+    slope = 1e-12 * np.abs(bend * resistance)
+    return Channels(resting, noise, slope, gain, alive, onset, is_inside, speed)
+
+
+def _bend_pC_per_s2(charge_pC: Floats, step_s: float) -> Floats:
+    """Curvature (n,) of charges (t, n) that begin at 0, by which a resting voltage drifts; 0 where none is plain.
+
+    A parabola that is least far from them (sum of magnitudes): most of the time a segment touches no dot.
+    """
+    parabola = 0.5 * (step_s * np.arange(1, len(charge_pC) + 1)[:, None]) ** 2
+    bend = np.zeros(charge_pC.shape[1])
+    width = 0.02 * np.abs(charge_pC).mean(axis=0) + 1e-12
+    for _ in range(ROUNDS):
+        share = 1.0 / np.maximum(np.abs(charge_pC - bend * parabola), width)
+        bend = (share * parabola * charge_pC).sum(axis=0) / (share * parabola**2).sum(axis=0)
+    left = np.abs(charge_pC - bend * parabola).mean(axis=0) / np.abs(charge_pC).mean(axis=0)
+    return np.asarray(np.where(left < DRIFTING, bend, 0.0))
 
 
 def _loudness(voltage_V: Floats, noise_V: Floats, step_s: float) -> Floats:
