@@ -38,14 +38,14 @@ SMOOTHED_S = 0.006
 class Channels:
     """The channels (n,) of the first seconds.
 
-    resting_V, noise_V; slope_V_per_s : of a resting voltage that drifts, without sign; gain : charge over that of the kernel, with the sign of the polarity; alive. onset : number of
+    resting_V, noise_V; slope_V_per_s : root mean square of that of resting voltages which drift; gain : charge over that of the kernel, with the sign of the polarity; alive. onset : number of
     the first sample with a signal, which is inside : a signal was there from the first sample on. speed_mm_per_s :
     roughly.
     """
 
     resting_V: Floats
     noise_V: Floats
-    slope_V_per_s: Floats
+    slope_V_per_s: float
     gain: Floats
     alive: Bools
     onset: int
@@ -90,7 +90,7 @@ def measured_channels(
     loud = _loudness(flat[max(onset, 0) :], noise, step_s)
     gain, alive = _gains(charge, loud, is_inside, table, places)
     speed = _speed(charge * np.sign(gain), step_s, alive, table)
-    slope = 1e-12 * np.abs(bend * resistance)
+    slope = 1e-12 * float(np.sqrt(np.mean((bend * resistance) ** 2)))
     return Channels(resting, noise, slope, gain, alive, onset, is_inside, speed)
 
 

@@ -197,7 +197,7 @@ class LineReader:
         gain = np.abs(channels.gain)
         walk = 1e12 * channels.noise_V * np.sqrt(step_s / self._rate) / np.abs(self._circuit[1]) / gain
         drift = np.hypot(walk, DRIFT_SHARE * table.largest_pC)
-        slope = np.maximum(channels.slope_V_per_s, SLOPE_V_PER_S)
+        slope = max(channels.slope_V_per_s, SLOPE_V_PER_S)
         bend = 1e12 * slope * step_s**2 / np.abs(self._circuit[1]) / gain
         noise = 1e12 * np.abs(self._circuit[0]) * channels.noise_V / gain
         floor = (FLOOR_SHARE * table.largest_pC) ** 2 + noise**2
