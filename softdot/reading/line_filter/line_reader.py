@@ -30,8 +30,8 @@ DIRECTION_EVIDENCE, DIRECTION_COLUMNS = 25.0, 6
 """Logarithm of the evidence that decides the direction, or columns after which the better one is taken."""
 DRIFT_SHARE = 7e-4
 """Least standard deviation of the drift in a step, over the largest charge of one dot."""
-SLOPE_V_PER_S = 3e-4
-"""By how much a resting voltage is taken to change in a second."""
+SLOPE_V_PER_S, SLOPES = 3e-4, 2.0
+"""By how much a resting voltage is taken to change in a second, at least and over what the first seconds say."""
 CERTAIN = 0.9
 """Least probability of a cell that is given out as read."""
 
@@ -197,7 +197,7 @@ class LineReader:
         gain = np.abs(channels.gain)
         walk = 1e12 * channels.noise_V * np.sqrt(step_s / self._rate) / np.abs(self._circuit[1]) / gain
         drift = np.hypot(walk, DRIFT_SHARE * table.largest_pC)
-        slope = max(channels.slope_V_per_s, SLOPE_V_PER_S)
+        slope = max(SLOPES * channels.slope_V_per_s, SLOPE_V_PER_S)
         bend = 1e12 * slope * step_s**2 / np.abs(self._circuit[1]) / gain
         noise = 1e12 * np.abs(self._circuit[0]) * channels.noise_V / gain
         floor = (FLOOR_SHARE * table.largest_pC) ** 2 + noise**2
