@@ -37,7 +37,7 @@ BLANK = 0.3
 """Share of blank columns where nothing is known."""
 BLANK_CELLS, BLANK_AGAIN, BLANK_FIRST, BLANK_SECOND = 0.18, 0.03, 0.05, 0.2
 """Shares of cells that are blank, of those behind a blank one, and with a blank first or second column alone."""
-HEIGHT_MEAN, HEIGHT_SPREAD = 0.9, 0.25
+HEIGHT_MEAN, HEIGHT_SPREAD = 0.95, 0.2
 """Mean and standard deviation of what a dot gives over what a nominal one would, worn ones among them: assumed."""
 ROUGH_SHARE, DEGREES = 0.15, 4.0
 """Standard deviation of a charge over the charge, and degrees of freedom of Student's t."""

@@ -35,8 +35,8 @@ from softdot.reading.line_filter.beam import (
 from softdot.reading.line_filter.hypotheses import Beam, anywhere, early_settings, settings
 from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, LineTable
 
-LAG_COLUMNS = 4
-"""Columns that must follow a cell before it is given out."""
+LAG_COLUMNS, FIRST_COLUMNS = 4, 12
+"""Columns that must follow a cell before it is given out, and least number of all: posture and heights come first."""
 FLOOR_SHARE = 0.045
 """Standard deviation of a charge of none over the largest charge of one dot."""
 TOUCH_SHARE = 0.08
@@ -257,7 +257,8 @@ class LineFilter:
         return found
 
     def _is_ready(self, at_end: bool) -> bool:
-        return self.columns_seen >= 2 * self.emitted + (2 if at_end else 2 + LAG_COLUMNS)
+        passed = 2 * self.emitted + 2
+        return self.columns_seen >= (passed if at_end else max(passed + LAG_COLUMNS, FIRST_COLUMNS))
 
     def _cell(self, number: int) -> PassedCell:
         """The marginal of a cell over all hypotheses."""
