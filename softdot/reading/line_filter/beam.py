@@ -266,32 +266,26 @@ def _pattern(place, choice, h, sensor):  # type: ignore[no-untyped-def]
 
 @nb.njit(cache=True)
 def _fill_options(options, way, touch, may_touch, turn, settings):  # type: ignore[no-untyped-def]
-    """Fill the ways (12, 6) in which a hypothesis may go on; those that it has not have no chance."""
+    """Fill the ways (12, 6) in which a hypothesis may go on, whose chances sum up to 1; others have none."""
     options[:, CHANCE], options[:, CHANGE] = -np.inf, 0.0
     options[:, NEW_WAY] = way
     options[:, ASIDE:CONTACT] = 0
     options[:, CONTACT] = touch
-    options[0, CHANCE] = 0.0
-    number = 1
+    usual = 1 if way == STILL else 3
+    for k in range(1, usual):
+        options[k, CHANCE], options[k, CHANGE] = np.log(1.0 / 6.0), (2 * k - 3) * settings.faster
+    options[0, CHANCE] = np.log(2.0 / 3.0) if usual == 3 else 0.0
+    number = usual
     if way == STILL:
-        options[1, CHANCE], options[1, NEW_WAY] = settings.log_go, FORTH
-        options[2, CHANCE], options[2, NEW_WAY] = settings.log_back, BACK
-        number = 3
+        options[number, CHANCE], options[number, NEW_WAY] = settings.log_go, FORTH
+        options[number + 1, CHANCE], options[number + 1, NEW_WAY] = settings.log_back, BACK
+        number += 2
     else:
-        options[0, CHANCE] = np.log(2.0 / 3.0)
-        for k in range(2):
-            sign = 2 * k - 1
-            options[number, CHANCE], options[number, CHANGE] = np.log(1.0 / 6.0), sign * settings.faster
+        part = CHANGE if turn == 0 else ASIDE if turn == 1 else TURN
+        for sign in (-1, 1):
+            chance = settings.log_jump if turn == 0 else settings.log_aside if turn == 1 else settings.log_turn
+            options[number, CHANCE], options[number, part] = chance, sign * (settings.jump if turn == 0 else 1.0)
             number += 1
-            if turn == 0:
-                options[number, CHANCE], options[number, CHANGE] = settings.log_jump, sign * settings.jump
-                number += 1
-            elif turn == 1:
-                options[number, CHANCE], options[number, ASIDE] = settings.log_aside, sign
-                number += 1
-            else:
-                options[number, CHANCE], options[number, TURN] = settings.log_turn, sign
-                number += 1
         if turn == 0:
             options[number, CHANCE], options[number, NEW_WAY] = settings.log_stop, STILL
             number += 1
@@ -301,8 +295,13 @@ def _fill_options(options, way, touch, may_touch, turn, settings):  # type: igno
             number += 1
     if touch == 1 and turn == 1:
         options[number, CHANCE], options[number, CONTACT] = settings.log_lift, 0
-    elif touch == 0 and may_touch:
+        number += 1
+    elif touch == 0:
         options[number, CHANCE], options[number, CONTACT] = settings.log_touch, 1
+        number += 1
+    options[:usual, CHANCE] += np.log(max(1.0 - np.exp(options[usual:number, CHANCE]).sum(), 0.05))
+    if touch == 0 and not may_touch:
+        options[number - 1, CHANCE] = -np.inf
 
 
 @piece()

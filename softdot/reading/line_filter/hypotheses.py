@@ -28,7 +28,7 @@ SPEED_SPREAD_PER_SQRT_S, JUMP, JUMPS_PER_S = 0.5, 0.35, 0.5
 """Random walk of the log-speed, its jumps, and how often each happens."""
 RELAX_S, SETTLE_S = 1.0, 2.0
 """Time in which the log-speed returns to its mean, and the mean follows the log-speed."""
-STOPS_PER_S, GOES_PER_S, BACKS_PER_S, FORTHS_PER_S = 0.3, 3.0, 0.3, 4.0
+STOPS_PER_S, GOES_PER_S, BACKS_PER_S, FORTHS_PER_S = 0.3, 1.5, 0.3, 4.0
 ASIDES_PER_S, TURNS_PER_S, LIFTS_PER_S, TOUCHES_PER_S = 2.0, 0.2, 0.2, 6.0
 """How often a hand stops and goes on, turns back and forth, moves or turns by a step, loses and finds contact: all of
 this is assumed.
@@ -37,7 +37,7 @@ BLANK = 0.3
 """Share of blank columns where nothing is known."""
 BLANK_CELLS, BLANK_AGAIN, BLANK_FIRST, BLANK_SECOND = 0.18, 0.03, 0.05, 0.2
 """Shares of cells that are blank, of those behind a blank one, and with a blank first or second column alone."""
-HEIGHT_MEAN, HEIGHT_SPREAD = 0.95, 0.2
+HEIGHT_MEAN, HEIGHT_SPREAD = 0.9, 0.25
 """Mean and standard deviation of what a dot gives over what a nominal one would, worn ones among them: assumed."""
 ROUGH_SHARE, DEGREES = 0.15, 4.0
 """Standard deviation of a charge over the charge, and degrees of freedom of Student's t."""
@@ -80,8 +80,8 @@ def settings(step_s: float, is_mirrored: bool) -> HandMotion:
         log_jump=rarely(JUMPS_PER_S),
         log_stop=rarely(STOPS_PER_S),
         log_go=often(GOES_PER_S),
-        log_back=often(BACKS_PER_S),
-        log_forth=often(FORTHS_PER_S),
+        log_back=rarely(BACKS_PER_S),
+        log_forth=rarely(FORTHS_PER_S),
         log_aside=rarely(ASIDES_PER_S),
         log_turn=rarely(TURNS_PER_S),
         log_lift=rarely(LIFTS_PER_S),
