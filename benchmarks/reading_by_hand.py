@@ -6,7 +6,8 @@ KERNEL is the folder of softdot array --kernel that the reader knows; TRUE are f
 voltages, one line after the other; without one KERNEL makes them. "made" stands for the kernel of the tests, and
 "made-other" for one whose charges are 0.8 of it, 5 % wider, with more crosstalk and interaction. Every row has seeds
 of its own from --seed on. Characters are right where the most likely cells say so; "certain" is the share of cells
-stated at 0.9 or above, and "right of these" the share of them that is right.
+stated at 0.9 or above, and "right of these" the share of them that is right. A second table compares stated
+probabilities of all rows with shares that are right.
 """
 
 import argparse
@@ -36,6 +37,8 @@ TEXT = (
     "trouble of getting up and picking the daisies, when suddenly a white rabbit with pink eyes ran close by her"
 )
 LINE_CHARACTERS = 40
+EDGES = (0.5, 0.7, 0.9, 0.99, 0.999)
+"""Of the groups of stated probabilities."""
 HAND = {"speed_mm_per_s": 40.0, "speed_cv": 0.2, "speed_time_s": 0.5}
 ALL = {"pauses": 2, "ways_back": 2, "wander_mm": 0.3, "skew_deg": 0.57, "hum_mV": 20.0, "hum_drift_Hz": 0.05,
        "hum_third": 0.2, "gain_scatter": 0.2}  # fmt: skip
@@ -116,27 +119,31 @@ def heard_line(true: ArrayKernel, known: ArrayKernel, cells: np.ndarray, given: 
     return Reader(known, chosen, readout), heard
 
 
-def read_one(reader: Reader, heard: Voltages, cells: np.ndarray) -> dict[str, float]:
-    """Characters and certain cells of one line."""
+def read_one(reader: Reader, heard: Voltages, cells: np.ndarray, stated: list[tuple[float, bool]]) -> dict[str, float]:
+    """Characters and certain cells of one line; stated takes the probability of each cell, and whether it is right."""
     begun = time.process_time()
     text = text_of(cells)
     found: dict[str, float] = {"of": len(text), "right": 0, "certain": 0, "certain_right": 0, "cells": 0, "lost": 0}
-    found |= {"squares": 0.0, "seconds": float(np.ptp(heard.time_s)), "failed": 0.0}
+    found["seconds"] = float(np.ptp(heard.time_s))
     try:
         track = track_hand(reader, heard)
     except NoDotError:
-        return {**found, "cpu_s": time.process_time() - begun, "failed": 1.0}
+        return {**found, "cpu_s": time.process_time() - begun}
     found["cpu_s"] = time.process_time() - begun
     found["right"] = rate(text, text_of(track.cells))["right"]
     partner = {j: i for i, j in align([int(c) for c in cells], [int(c) for c in track.cells]) if j is not None}
     right = np.array([partner[j] is not None and cells[partner[j]] == one for j, one in enumerate(track.cells)])
     certain = track.probability >= 0.9
     found |= {"certain": int(certain.sum()), "certain_right": int((certain & right).sum()), "cells": len(right)}
-    found |= {"lost": track.report.lost, "gap": float(np.sum(track.probability - right))}
+    found["lost"] = track.report.lost
+    stated += zip(track.probability, right, strict=True)
     return found
 
 
-def row(conditions: dict[str, Any], known: ArrayKernel, true: list[ArrayKernel], characters: int, seed: int) -> str:
+def row(
+    conditions: dict[str, Any], known: ArrayKernel, true: list[ArrayKernel], characters: int, seed: int,
+    stated: list[tuple[float, bool]],
+) -> str:  # fmt: skip
     """The figures of one row."""
     found: list[dict[str, float]] = []
     while sum(one["of"] for one in found) < characters:
@@ -144,16 +151,31 @@ def row(conditions: dict[str, Any], known: ArrayKernel, true: list[ArrayKernel],
         random = np.random.default_rng(own)
         cells = cells_of(line_of_words(random))
         reader, heard = heard_line(true[len(found) % len(true)], known, cells, drawn(conditions, random), own)
-        found.append(read_one(reader, heard, cells))
-    total = {name: sum(one.get(name, 0.0) for one in found) for name in (*found[0], "gap")}
+        found.append(read_one(reader, heard, cells, stated))
+    total = {name: sum(one[name] for one in found) for name in found[0]}
     low = 100.0 * wilson_interval(int(total["right"]), int(total["of"]))[0]
     sure = 100.0 * total["certain_right"] / max(total["certain"], 1)
     return (
         f"{int(total['right'])} of {int(total['of'])} | {100 * total['right'] / total['of']:.1f} | {low:.1f} | "
         f"{100 * total['certain'] / max(total['cells'], 1):.1f} | {sure:.1f} | "
-        f"{total['gap'] / max(total['cells'], 1):.3f} | {int(total['lost'])} | "
+        f"{int(total['lost'])} | "
         f"{total['cpu_s'] / total['seconds']:.2f}"
     )
+
+
+def reliability(stated: list[tuple[float, bool]]) -> str:
+    """Stated probabilities beside shares that are right, and the expected calibration error."""
+    told, right = np.array(stated, dtype=np.float64).T
+    group = np.digitize(told, EDGES)
+    lines, error = ["| stated | cells | mean stated % | right % |", "|---|---|---|---|"], 0.0
+    for number in np.unique(group):
+        own = group == number
+        low, high = (0.0, *EDGES)[number], (*EDGES, 1.0)[number]
+        lines.append(
+            f"| {low:g} to {high:g} | {own.sum()} | {100 * told[own].mean():.2f} | {100 * right[own].mean():.2f} |"
+        )
+        error += abs(told[own].mean() - right[own].mean()) * own.mean()
+    return "\n".join([*lines, f"expected calibration error {error:.4f}"])
 
 
 def main() -> None:
@@ -167,12 +189,14 @@ def main() -> None:
     chosen = ask.parse_args()
     known = kernel_named(chosen.kernel)
     true = [kernel_named(name) for name in chosen.true] or [known]
-    print("| condition | right | % | at least % | certain % | right of these % | stated less right | lost | s per s |")
-    print("|---|---|---|---|---|---|---|---|---|")
+    print("| condition | right | % | at least % | certain % | right of these % | lost | s per s |")
+    print("|---|---|---|---|---|---|---|---|")
+    stated: list[tuple[float, bool]] = []
     for number, (name, conditions) in enumerate(ROWS.items()):
         if chosen.rows is None or any(part in name for part in chosen.rows.split(",")):
             seed = chosen.seed + 100 * number
-            print(f"| {name} | {row(conditions, known, true, chosen.characters, seed)} |", flush=True)
+            print(f"| {name} | {row(conditions, known, true, chosen.characters, seed, stated)} |", flush=True)
+    print(reliability(stated), flush=True)
 
 
 if __name__ == "__main__":
