@@ -80,6 +80,13 @@ def add_read(commands: Any) -> None:
         metavar="FILE.csv",
         help="decode these voltages: time_s, voltage_1_V, ...; FILE.npz of touches with a learned kernel",
     )
+    read.add_argument("--text", dest="text_of_option", metavar="TEXT", help="the same as the text before the options")
+    read.add_argument(
+        "--calibrate", metavar="FILE.csv", help="find leads, gains and width by voltages of the text, at least 8 cells"
+    )
+    read.add_argument(
+        "--calibration", metavar="FILE.json", help="with --recording: correct the voltages by what --calibrate wrote"
+    )
     read.add_argument("--learn", nargs="+", metavar="FILE.npz", help="learn a kernel from labelled touches of cells")
     read.add_argument("--keep-rest", action="store_true", help="with --learn: use what channels say before the touch")
     read.add_argument(

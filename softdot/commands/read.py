@@ -34,17 +34,20 @@ def run_read(
     table: str | None = None,
     decoders: str = DEFAULT_DECODERS,
     recording: Path | None = None,
+    calibration: Path | None = None,
     progress: Progress | None = None,
 ) -> dict[str, Any]:
     """Read a text with the kernel of a folder into the folder out and return the content of reading.json.
 
-    text : None or empty only with a recording of an unknown text. table : of liblouis, None for plain English.
+    text : None or empty only with a recording of an unknown text. calibration : of the sensor of a recording. table :
+    of liblouis, None for plain English.
     InputError, before anything is written, for whatever cannot be read.
     """
     import numpy as np
 
     from export.array.reading_page import write_reading_page
     from export.array.signals import draw_signals
+    from softdot.reading.calibration_file import load_calibration, widened
     from softdot.reading.cells import cells_of
     from softdot.reading.conditions import ReadingConditions
     from softdot.reading.decoders import named_decoders
@@ -60,6 +63,9 @@ def run_read(
         cells = None if recording is not None and not (text or "").strip() else cells_of(text or "", table)
         kernel = open_kernel(kernel_folder, config)
         heard = None if recording is None else read_voltages(recording, len(kernel.centres_mm))
+        if calibration is not None and heard is not None:
+            known = load_calibration(calibration, kernel)
+            kernel, heard = widened(kernel, known.width), known.voltages(heard)
         with staged_folder(out, READING) as folder:
             chosen = conditions or ReadingConditions()
             reading = read_line(kernel, readout_of(kernel, config), chosen, names, progress, cells, heard)
@@ -73,6 +79,7 @@ def run_read(
                     **reading_content(reading, text if cells is not None else None, table),
                     "table": table,
                     "recording": None if recording is None else str(recording),
+                    "calibration": None if calibration is None else str(calibration),
                     "config": kernel.about["config"],
                 }
             )
@@ -91,12 +98,16 @@ def command(chosen: Namespace) -> int:
     single touches. InputError.
     """
     from foundation.errors import InputError
-    from softdot.commands import read_touches
+    from softdot.commands import read_calibration, read_touches
     from softdot.config.loading import load_config
     from softdot.progress import progress_of
     from softdot.reading.conditions import refuse_idle
     from softdot.reading.learned_kernel.kernel_file import is_learned_kernel
 
+    if chosen.text_of_option is not None:
+        if chosen.text is not None:
+            raise InputError(f"--text = '{chosen.text_of_option}': the text stands before the options already")
+        chosen.text = chosen.text_of_option
     if chosen.learn is not None or is_learned_kernel(chosen.kernel):
         return read_touches.command(chosen)
     for name in ("keep_rest", "among"):
@@ -109,14 +120,18 @@ def command(chosen: Namespace) -> int:
     config = load_config(chosen.config, chosen.set) if chosen.config is not None or chosen.set else None
     if chosen.study or chosen.conditions is not None:
         return _study_conditions(chosen, config)
+    if chosen.calibrate is not None:
+        return read_calibration.command(chosen, config)
     recording = None if chosen.recording is None else Path(chosen.recording)
+    if recording is None and chosen.calibration is not None:
+        raise InputError(f"--calibration = '{chosen.calibration}': acts only with --recording")
     if recording is not None and chosen.preset is not None:
         raise InputError(f"--preset = '{chosen.preset}': acts only on voltages that are simulated; leave it out")
     refuse_idle(conditions_of(chosen), _stated_conditions(chosen), recording is not None)
     with only_the_summary_on_stdout(), progress_of(chosen) as progress:
         summary = run_read(
             chosen.text, Path(chosen.kernel), Path(chosen.output), conditions_of(chosen), config, chosen.table,
-            _decoders(chosen), recording, progress,
+            _decoders(chosen), recording, None if chosen.calibration is None else Path(chosen.calibration), progress,
         )  # fmt: skip
     show(summary, chosen, short_text)
     return GOOD if summary["is_certain"] else NOT_CONVERGED

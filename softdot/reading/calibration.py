@@ -4,7 +4,7 @@ The course of the array is found by dynamic programming over its place (Viterbi)
 which knows no order, then from all channels; then charges are compared with those of the kernel along the course.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from scipy.optimize import linear_sum_assignment
 from foundation.arrays import Floats, Ints
 from foundation.errors import InputError
 from softdot.arrays.kernel import ArrayKernel
-from softdot.reading.calibration_file import Calibration, Interval
+from softdot.reading.calibration_file import Calibration, Interval, widened
 from softdot.reading.conditions import DEFAULT_SHARE_OF_DEPTH
 from softdot.reading.line import cell_pitch_mm, nominal_line
 from softdot.reading.line_filter.charge import noise_V
@@ -35,6 +35,8 @@ ROUNDS, PARTS = 3, 8
 """Rounds of course and channels, and parts of the line that intervals come from."""
 DEAD_SHARE = 0.15
 """Gain over the median one below which a lead is dead."""
+NOISE_SAMPLES = 100
+"""In a part of the time in which noise is measured."""
 LEAST_FIT = 0.7
 """Share of the squared charges that a known line must explain."""
 STUDENT = 2.36
@@ -49,7 +51,7 @@ class _Heard:
     drift: Floats
 
 
-def calibrate(reader: Reader, heard: Voltages, cells: Ints, config_hash: str) -> Calibration:
+def calibrate(reader: Reader, heard: Voltages, cells: Ints) -> Calibration:
     """Calibration by the voltages of known cells (c,). InputError where they do not fit together."""
     if len(cells) < LEAST_CELLS:
         raise InputError(f"--text: has {len(cells)} cells, at least {LEAST_CELLS} are needed to calibrate")
@@ -63,7 +65,7 @@ def calibrate(reader: Reader, heard: Voltages, cells: Ints, config_hash: str) ->
             f"--calibrate: the text explains {100.0 * found.fit:.0f} % of the charges, at least "
             f"{100.0 * LEAST_FIT:.0f} % are needed; text, array and recording do not belong together"
         )
-    return _told(reader, quiet, charges, found, len(cells), config_hash)
+    return _told(quiet, charges, found, len(cells), reader.kernel.about["config_hash"])
 
 
 @dataclass(frozen=True)
@@ -120,11 +122,6 @@ def _grid(reader: Reader, count: int) -> Floats:
     pitch = cell_pitch_mm(reader.standard)
     far = reach_mm(reader.kernel, 0.0) + 0.5 * pitch
     return np.arange(-far, pitch * (count - 1) + far, GRID_MM)
-
-
-def widened(kernel: ArrayKernel, width: float) -> ArrayKernel:
-    """The kernel with the charge of a dot spread wider about each segment's middle, by a factor."""
-    return replace(kernel, x_mm=width * kernel.x_mm, y_mm=width * kernel.y_mm)
 
 
 def _charges_along(kernel: ArrayKernel, reader: Reader, cells: Ints, place: Floats, offset_mm: float) -> Floats:
@@ -213,7 +210,7 @@ def _least(values: Floats, squares: Floats) -> float:
     return float(values[middle] + np.clip(shift, -1.0, 1.0) * (values[1] - values[0]))
 
 
-def _told(reader: Reader, heard: Voltages, charges: _Heard, found: _Fit, cells: int, config_hash: str) -> Calibration:
+def _told(heard: Voltages, charges: _Heard, found: _Fit, cells: int, config_hash: str) -> Calibration:
     """The calibration of a fit; intervals are of means over parts of the line."""
     gain, _ = _gains(charges, found.predicted, found.order)
     parts = [np.arange(len(charges.charge_pC))[k * len(charges.charge_pC) // PARTS :][: len(charges.charge_pC) // PARTS]
@@ -229,9 +226,15 @@ def _told(reader: Reader, heard: Voltages, charges: _Heard, found: _Fit, cells: 
         polarity=[int(one) for one in polarity],
         gain=[_interval(one, column) for one, column in zip(np.abs(gain), np.abs(apart).T, strict=True)],
         scale=_interval(float(np.abs(gain[~dead]).mean()), alive), width=found.width,
-        noise_mV=[1e3 * float(one) for one in noise_V(heard.voltage_V)[found.order]],
+        noise_mV=[1e3 * float(one) for one in _quiet_noise_V(heard.voltage_V)[found.order]],
         offset_mm=found.offset_mm, explained_share=found.fit,
     )  # fmt: skip
+
+
+def _quiet_noise_V(voltage_V: Floats) -> Floats:
+    """White noise (n,) where least else goes on: of ten parts of the time only one has less."""
+    parts = np.array_split(voltage_V, max(1, len(voltage_V) // NOISE_SAMPLES))
+    return np.asarray(np.quantile([noise_V(part) for part in parts], 0.1, axis=0))
 
 
 def _interval(value: float, parts: Floats) -> Interval:

@@ -56,6 +56,11 @@ class Calibration(BaseModel):
         return replace(heard, voltage_V=heard.voltage_V[:, [lead - 1 for lead in self.order]] / gain)
 
 
+def widened(kernel: ArrayKernel, width: float) -> ArrayKernel:
+    """The kernel whose charges lie over places that are wider by a factor."""
+    return replace(kernel, x_mm=width * kernel.x_mm, y_mm=width * kernel.y_mm)
+
+
 def load_calibration(path: Path, kernel: ArrayKernel) -> Calibration:
     """Load the calibration of a kernel from a file or its folder. InputError for that of another design."""
     where = f"calibration '{path}'"

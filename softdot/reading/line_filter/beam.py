@@ -64,9 +64,9 @@ class HandMotion(NamedTuple):
 
     faster, jump : steps of the log-speed; relax, settle : shares of the way of log-speed and mean to each other in a
     step. log_blank, log_dots (4,) : of a blank column, and of each other pattern, by the kind of _kind; log_unseen : of
-    one that passes without contact. height, height_spread : mean and variance of the height of dots, as shares of the nominal charge. rough :
-    standard deviation of a charge over the charge; degrees : of Student's t. kept_log, most_kept : how far behind the
-    best, and how many hypotheses are kept.
+    one that passes without contact. height, height_spread : mean and variance of the height of dots, as shares of the
+    nominal charge. rough : standard deviation of a charge over the charge; degrees : of Student's t. kept_log,
+    most_kept : how far behind the best, and how many hypotheses are kept.
     """
 
     step_s: float
@@ -209,7 +209,7 @@ def advance(state, choice, memory, measured, temper, may_touch, turn, sensor, se
 
 @nb.njit(cache=True)
 def _weigh(made, made_choice, memory, parent, fresh, merged, measured, temper, sensor, settings):  # type: ignore[no-untyped-def]
-    """Add the evidence of the charges measured (n,) to those of the children that are merged (k,): their weights (k,)."""
+    """Add the evidence of charges (n,) to the weights of children that stand for others (k,), and return these (k,)."""
     found, rest = np.empty((4, 2 * ROWS)), np.empty(measured.shape[0])
     weight = np.empty(len(merged))
     for k in range(len(merged)):

@@ -98,7 +98,11 @@ class LineFilter:
     def __post_init__(self) -> None:
         """Make room for children and products."""
         channels = self.table.lone.shape[-1]
-        self._settings, self._early, self._steps = settings(self.step_s, self.table.is_mirrored), early_settings(self.step_s, self.table.is_mirrored), 0
+        self._settings, self._early, self._steps = (
+            settings(self.step_s, self.table.is_mirrored),
+            early_settings(self.step_s, self.table.is_mirrored),
+            0,
+        )
         self._is_early = True
         self._room = (
             np.empty((MOST_CHILDREN, 4)), np.empty((MOST_CHILDREN, 6), dtype=np.int64),
@@ -110,7 +114,10 @@ class LineFilter:
         first, second = self._settings.height, self._settings.height_spread + self._settings.height**2
         self._prior_heights = HEIGHTS_PRIOR * np.array([1.0, first, second])
         self._heights = self._prior_heights.copy()
-        self._safe_drift, self._safe_log_speed = self.hypotheses.memory[0, LEVEL:], float(self.hypotheses.state[:, 1].mean())
+        self._safe_drift, self._safe_log_speed = (
+            self.hypotheses.memory[0, LEVEL:],
+            float(self.hypotheses.state[:, 1].mean()),
+        )
 
     @property
     def best(self) -> Beam:
@@ -181,7 +188,9 @@ class LineFilter:
             return
         number = self.columns_seen - 3
         pattern = int(_column(self.best.choice[:, COLUMNS], self.best.choice[:, SEEN], number)[0])
-        slots = [ROWS * (number % KEPT_HEIGHTS) + row for row in range(ROWS) if 0 < pattern < UNSEEN and pattern >> row & 1]
+        slots = [
+            ROWS * (number % KEPT_HEIGHTS) + row for row in range(ROWS) if 0 < pattern < UNSEEN and pattern >> row & 1
+        ]
         for slot in slots:
             height, spread = self.best.memory[0, [HEIGHT + slot, SPREAD + slot]]
             if spread < KNOWN_SPREAD:
