@@ -38,8 +38,8 @@ SMOOTHED_S = 0.006
 class Channels:
     """The channels (n,) of the first seconds.
 
-    resting_V, noise_V; slope_V_per_s : root mean square of that of resting voltages which drift; gain : charge over that
-    of the kernel, with the sign of the polarity; alive. onset : number of the first sample with a signal, which
+    resting_V, noise_V; slope_V_per_s : root mean square of that of resting voltages which drift; gain : charge over
+    that of the kernel, with the sign of the polarity; alive. onset : number of the first sample with a signal, which
     is_inside : a signal was there from the first sample on. speed_mm_per_s : roughly.
     """
 

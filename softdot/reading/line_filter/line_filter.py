@@ -98,12 +98,9 @@ class LineFilter:
     def __post_init__(self) -> None:
         """Make room for children and products."""
         channels = self.table.lone.shape[-1]
-        self._settings, self._early, self._steps = (
-            settings(self.step_s, self.table.is_mirrored),
-            early_settings(self.step_s, self.table.is_mirrored),
-            0,
-        )
-        self._is_early = True
+        self._settings = settings(self.step_s, self.table.is_mirrored)
+        self._early = early_settings(self.step_s, self.table.is_mirrored)
+        self._steps, self._is_early = 0, True
         self._room = (
             np.empty((MOST_CHILDREN, 4)), np.empty((MOST_CHILDREN, 6), dtype=np.int64),
             np.empty(MOST_CHILDREN, dtype=np.int64), np.empty(MOST_CHILDREN, dtype=np.int64),
@@ -114,10 +111,8 @@ class LineFilter:
         first, second = self._settings.height, self._settings.height_spread + self._settings.height**2
         self._prior_heights = HEIGHTS_PRIOR * np.array([1.0, first, second])
         self._heights = self._prior_heights.copy()
-        self._safe_drift, self._safe_log_speed = (
-            self.hypotheses.memory[0, LEVEL:],
-            float(self.hypotheses.state[:, 1].mean()),
-        )
+        self._safe_drift = self.hypotheses.memory[0, LEVEL:]
+        self._safe_log_speed = float(self.hypotheses.state[:, LOG_SPEED].mean())
 
     @property
     def best(self) -> Beam:
@@ -151,8 +146,8 @@ class LineFilter:
         """Turn of the array against the line."""
         return float(YAWS_DEG[self.hypotheses.choice[self._best, YAW]])
 
-    def step(self, charge_pC: Floats, temper: float, time_s: float) -> Floats:
-        """Take the charges (n,) of the next step, and return the residuals (n,) of the best hypothesis."""
+    def step(self, charge_pC: Floats, temper: float, time_s: float) -> None:
+        """Take the charges (n,) of the next step."""
         if self._steps == 0:
             first = self.hypotheses
             self._best = 0
@@ -173,10 +168,9 @@ class LineFilter:
         self._best = int(np.argmax(state[:, LOG_WEIGHT]))
         self.touching = bool(choice[self._best, TOUCH])
         self._learn_heights(seen)
-        residual = self._learn(charge_pC)
+        self._learn(charge_pC)
         self._note_time(time_s)
         self._look_for_the_track(charge_pC)
-        return residual
 
     def _level(self, memory: Floats) -> Floats:
         """The drift (n,) of each channel in a memory."""
@@ -188,10 +182,8 @@ class LineFilter:
             return
         number = self.columns_seen - 3
         pattern = int(_column(self.best.choice[:, COLUMNS], self.best.choice[:, SEEN], number)[0])
-        slots = [
-            ROWS * (number % KEPT_HEIGHTS) + row for row in range(ROWS) if 0 < pattern < UNSEEN and pattern >> row & 1
-        ]
-        for slot in slots:
+        rows = [row for row in range(ROWS) if 0 < pattern < UNSEEN and pattern >> row & 1]
+        for slot in (ROWS * (number % KEPT_HEIGHTS) + row for row in rows):
             height, spread = self.best.memory[0, [HEIGHT + slot, SPREAD + slot]]
             if spread < KNOWN_SPREAD:
                 own = np.array([1.0, height, height**2 + spread])
@@ -200,8 +192,8 @@ class LineFilter:
         spread = float(np.clip(second / count - (first / count) ** 2, *HEIGHT_SPREADS))
         self._settings = self._settings._replace(height=float(first / count), height_spread=spread)
 
-    def _learn(self, charge_pC: Floats) -> Floats:
-        """Follow fit and gains by the best hypothesis; the residuals (n,) that it leaves."""
+    def _learn(self, charge_pC: Floats) -> None:
+        """Follow fit and gains by the best hypothesis."""
         predicted = predicted_charges(self.best.state, self.best.choice, self.best.memory, self.sensor)
         heard = charge_pC - self._level(self.hypotheses.memory[self._best])
         alive, gain = self.sensor.alive, self.sensor.gain
@@ -222,7 +214,6 @@ class LineFilter:
             prior = (1.0 - fade) * GAIN_PRIOR_S / self.step_s * (0.3 * self.table.largest_pC) ** 2
             self._products += prior
             gain[:] = np.clip(self._products[0] / self._products[1], 1.0 / WIDEST_GAIN, WIDEST_GAIN)
-        return np.asarray(residual)
 
     def _note_time(self, time_s: float) -> None:
         """Note the time at which the best hypothesis first passes a cell, and the fit around it."""

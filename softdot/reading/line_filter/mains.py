@@ -56,7 +56,7 @@ def _is_steady(voltage_V: Floats, per_sample: float, line: Any) -> bool:
     turning = np.exp(-1j * per_sample * np.arange(len(voltage_V)))[:, None]
     common = ((voltage_V - voltage_V.mean(axis=0)) * turning) @ np.conj(line)
     size = [abs(part.mean()) for part in np.array_split(common, PARTS)]
-    return min(size) > STEADY * max(size)
+    return bool(min(size) > STEADY * max(size))
 
 
 def hum_state(voltage_V: Floats, sampling_Hz: float, frequency_Hz: float | None) -> tuple[Floats, Floats]:
