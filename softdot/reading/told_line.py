@@ -57,6 +57,11 @@ def track_warnings(track: HandTrack, labels: list[str]) -> list[str]:
             f"voltages: only {share:.0f} % of the cells are certain; this is no line of Braille, or the leads are in "
             "another order, or the array is another one than that of the kernel"
         )
+    elif track.exchanged is not None:
+        told.append(
+            f"leads: the cells are far more usual with {track.exchanged}; connect the leads in the order of the kernel, "
+            "or find their order by --calibrate"
+        )
     elif report.lost:
         count = int((track.probability < CERTAIN).sum())
         told.append(f"the track was lost {report.lost} times and looked for anew; {count} cells are uncertain ('?')")

@@ -7,6 +7,7 @@ import numpy as np
 from foundation.arrays import Floats, Ints
 from softdot.reading.decoders.model import DecodedCells
 from softdot.reading.decoders.onset import NoDotError
+from softdot.reading.lead_order import likelier_order
 from softdot.reading.line import cell_pitch_mm
 from softdot.reading.line_filter.line_reader import CERTAIN, LineReader, LineReport
 from softdot.reading.voltages import Reader, Voltages
@@ -53,8 +54,17 @@ class HandTrack:
 
     @property
     def is_whole(self) -> bool:
-        """Whether it is a line of Braille, and no cell is uncertain because the track was lost."""
-        return self.is_braille and (self.report.lost == 0 or bool((self.probability >= CERTAIN).all()))
+        """Whether it is a line of Braille as text has it, and no cell is uncertain because the track was lost."""
+        return (
+            self.is_braille
+            and self.exchanged is None
+            and (self.report.lost == 0 or bool((self.probability >= CERTAIN).all()))
+        )
+
+    @property
+    def exchanged(self) -> str | None:
+        """How the rows or columns of the leads seem to be exchanged as a whole, in words; None where they do not."""
+        return likelier_order(self.cells[self.probability >= CERTAIN])
 
     def place_mm(self, time_s: Floats) -> Floats:
         """Place (t,) of the array's middle from the leftmost cell; before and behind the line it stays."""
@@ -85,6 +95,7 @@ def track_hand(reader: Reader, heard: Voltages) -> HandTrack:
 
 
 def decode(track: HandTrack) -> DecodedCells:
-    """The cells that are certain, -1 for the others; none is where what was heard is no line of Braille."""
-    certain = np.where((track.probability >= CERTAIN) & track.is_braille, track.cells, -1)
+    """The cells that are certain, -1 for the others; none is where what was heard is no text."""
+    believed = track.is_braille and track.exchanged is None
+    certain = np.where((track.probability >= CERTAIN) & believed, track.cells, -1)
     return DecodedCells(certain, track.passed_s, track.cells, track.probability)

@@ -1,21 +1,28 @@
 """The reader of a line that slides by: what must hold of it whatever the line."""
 
+import json
+from dataclasses import replace
 from functools import cache
+from itertools import permutations
 
 import numpy as np
 import pytest
 
 from foundation.errors import InputError
 from geometry.braille_standards import standard
+from softdot.reading.calibration import calibrate
+from softdot.reading.calibration_file import load_calibration, widened
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.conditions import HAND
-from softdot.reading.decoders.hand import track_hand
+from softdot.reading.decoders.hand import decode, track_hand
 from softdot.reading.decoders.onset import NoDotError
+from softdot.reading.lead_order import likelier_order
 from softdot.reading.line_filter.charge import ChargeBlocks
 from softdot.reading.line_filter.line_reader import LineReader
 from softdot.reading.line_filter.mains import hum_frequency_Hz, hum_state, without_hum
 from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, line_table
-from softdot.reading.voltages import Voltages
+from softdot.reading.told_line import track_warnings
+from softdot.reading.voltages import Reader, Voltages
 from tests.cases import for_each
 from tests.softdot.reading.lines import READOUT, simulated
 from tests.softdot.reading.made_kernel import made_kernel
@@ -169,3 +176,58 @@ def test_a_drifting_hum_is_followed():
 def test_the_preset_of_a_hand_is_read():
     track = track_hand(*line(**HAND, seed=5))
     assert text_of(track.cells) == TEXT
+
+
+def test_rows_and_columns_of_leads_that_are_exchanged_are_told_by_the_cells():
+    """Whichever of them; text as it is and cells at random are left alone."""
+    cells = cells_of("what a hand reads it need not read with its eyes")
+    assert likelier_order(cells) is None
+    assert likelier_order(np.random.default_rng(3).integers(1, 64, 60)) is None
+    bits = (cells[:, None] >> np.arange(6)) & 1
+    for rows in permutations(range(3)):
+        for columns in ((0, 1), (1, 0)):
+            dots = [3 * column + row for column in columns for row in rows]
+            if dots != list(range(6)):
+                assert likelier_order(bits[:, dots] @ (1 << np.arange(6))) is not None, dots
+
+
+@pytest.mark.press
+@for_each(
+    "wiring", ["two leads of two rows", "shifted by one", "order reversed", "columns", "one reversed", "row dead"]
+)
+def test_a_wrong_wiring_is_never_silent(wiring):
+    """A sentence is told, and no text but the right one is given out."""
+    reader, heard = line(speed_cv=0.1)
+    orders = {"two leads of two rows": [5, 1, 2, 3, 4, 0], "shifted by one": [1, 2, 3, 4, 5, 0],
+              "order reversed": [5, 4, 3, 2, 1, 0], "columns": [1, 0, 3, 2, 5, 4]}  # fmt: skip
+    voltage = heard.voltage_V[:, orders.get(wiring, [0, 1, 2, 3, 4, 5])]
+    voltage[:, 2] *= -1.0 if wiring == "one reversed" else 1.0
+    if wiring == "row dead":
+        voltage[:, 2:4] = 1e-3 * np.random.default_rng(0).standard_normal((len(voltage), 2))
+    track = track_hand(reader, Voltages(heard.time_s, voltage))
+    assert track_warnings(track, reader.kernel.about["labels"])
+    assert text_of(decode(track).cells) == TEXT or not track.is_whole
+
+
+@pytest.mark.press
+def test_a_known_line_tells_leads_gains_and_width(tmp_path):
+    """Of a sensor with 0.8 of the charges over places 5 % wider, whose leads are mixed up and turned."""
+    order, text = [3, 4, 2, 6, 5, 1], "touch and read by hand"
+    kernel = shared_kernel()
+    wide = widened(replace(kernel, charge_pC=0.8 * kernel.charge_pC), 1.05)
+    _, heard = simulated(wide, cells_of(text), speed_cv=0.1, **FAST)
+    mixed = np.empty_like(heard.voltage_V)
+    mixed[:, np.array(order) - 1] = -heard.voltage_V
+    found = calibrate(Reader(kernel, MARBURG, READOUT), Voltages(heard.time_s, mixed), cells_of(text))
+    assert found.order == order
+    assert found.polarity == [-1] * 6
+    assert found.scale.low < 0.8 < found.scale.high
+    assert found.width == pytest.approx(1.05, abs=0.03)
+    np.testing.assert_allclose([one.value for one in found.gain], 0.8, rtol=0.08)
+    (tmp_path / "calibration.json").write_text(json.dumps({"format": "softdot-calibration/1", **found.model_dump()}))
+    assert load_calibration(tmp_path, kernel) == found
+    other = replace(kernel, about={**kernel.about, "config_hash": "0" * 64})
+    with pytest.raises(InputError, match="is of another design"):
+        load_calibration(tmp_path / "calibration.json", other)
+    with pytest.raises(InputError, match="has 2 cells, at least 8 are needed"):
+        calibrate(Reader(kernel, MARBURG, READOUT), heard, cells_of("ab"))
