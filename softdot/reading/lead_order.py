@@ -1,4 +1,4 @@
-"""Whether cells look like text, or like text through leads whose rows or columns are exchanged as a whole.
+"""Whether cells look like text, or like text through leads that are dead, or exchanged by rows or columns as a whole.
 
 Such an array reads other cells as certainly as the right one. What tells it is that letters are far more frequent in
 text than other cells, in any language: the cells are more usual with the leads exchanged back.
@@ -19,6 +19,8 @@ LETTERS = {
 """Per cent of the letters of English texts (Lewand, Cryptological Mathematics, 2000)."""
 LETTERS_SHARE = 0.85
 """Of the cells with dots, assumed; the others share the rest alike."""
+LEAST_CELLS = 12
+"""With dots from which a row without any is told."""
 LEAST_NATS, LEAST_NATS_A_CELL, LIKE_TEXT = 12.0, 0.3, -3.8
 """Log-likelihood by which cells must be more usual in another order, in all and for each, and least one of a cell in
 that order: of text it is -3.2, of cells at random below -5.
@@ -35,6 +37,14 @@ def likelier_order(cells: Ints) -> str | None:
     best = max(gains, key=lambda words: gains[words])
     like_text = gains[best] + float(usual[seen].sum()) > LIKE_TEXT * len(seen)
     return best if like_text and gains[best] > max(LEAST_NATS, LEAST_NATS_A_CELL * len(seen)) else None
+
+
+def silent_rows(cells: Ints) -> list[int]:
+    """Rows, from 1, that have no dot in any of LEAST_CELLS cells (c,) or more, as text never has it."""
+    seen = cells[cells > 0]
+    if len(seen) < LEAST_CELLS:
+        return []
+    return [row + 1 for row in range(3) if not (seen & (0b001001 << row)).any()]
 
 
 def _log_shares() -> np.ndarray:

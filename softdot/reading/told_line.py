@@ -59,9 +59,12 @@ def track_warnings(track: HandTrack, labels: list[str]) -> list[str]:
         )
     elif track.exchanged is not None:
         told.append(
-            f"leads: the cells are far more usual with {track.exchanged}; connect the leads in the order of the kernel, "
-            "or find their order by --calibrate"
+            f"leads: the cells are far more usual with {track.exchanged}; connect the leads in the order of the "
+            "kernel, or find their order by --calibrate"
         )
+    elif track.silent_rows:
+        rows = ", ".join(str(row) for row in track.silent_rows)
+        told.append(f"leads: no cell has a dot in row {rows}; its channels are dead, or this is no text")
     elif report.lost:
         count = int((track.probability < CERTAIN).sum())
         told.append(f"the track was lost {report.lost} times and looked for anew; {count} cells are uncertain ('?')")

@@ -7,7 +7,7 @@ import numpy as np
 from foundation.arrays import Floats, Ints
 from softdot.reading.decoders.model import DecodedCells
 from softdot.reading.decoders.onset import NoDotError
-from softdot.reading.lead_order import likelier_order
+from softdot.reading.lead_order import likelier_order, silent_rows
 from softdot.reading.line import cell_pitch_mm
 from softdot.reading.line_filter.line_reader import CERTAIN, LineReader, LineReport
 from softdot.reading.voltages import Reader, Voltages
@@ -55,11 +55,17 @@ class HandTrack:
     @property
     def is_whole(self) -> bool:
         """Whether it is a line of Braille as text has it, and no cell is uncertain because the track was lost."""
-        return (
-            self.is_braille
-            and self.exchanged is None
-            and (self.report.lost == 0 or bool((self.probability >= CERTAIN).all()))
-        )
+        return self.is_text and (self.report.lost == 0 or bool((self.probability >= CERTAIN).all()))
+
+    @property
+    def is_text(self) -> bool:
+        """Whether it is a line of Braille whose cells are no less usual than those of text."""
+        return self.is_braille and self.exchanged is None and not self.silent_rows
+
+    @property
+    def silent_rows(self) -> list[int]:
+        """Rows of dots, from 1, of which the line has none."""
+        return silent_rows(self.cells[self.probability >= CERTAIN])
 
     @property
     def exchanged(self) -> str | None:
@@ -96,6 +102,5 @@ def track_hand(reader: Reader, heard: Voltages) -> HandTrack:
 
 def decode(track: HandTrack) -> DecodedCells:
     """The cells that are certain, -1 for the others; none is where what was heard is no text."""
-    believed = track.is_braille and track.exchanged is None
-    certain = np.where((track.probability >= CERTAIN) & believed, track.cells, -1)
+    certain = np.where((track.probability >= CERTAIN) & track.is_text, track.cells, -1)
     return DecodedCells(certain, track.passed_s, track.cells, track.probability)
