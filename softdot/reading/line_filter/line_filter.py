@@ -55,6 +55,8 @@ HEIGHTS_PRIOR, HEIGHTS_MEMORY, KNOWN_SPREAD, HEIGHT_SPREADS = 10.0, 60.0, 0.03, 
 """Of the heights of a line's dots: weight of what was assumed and memory, both in dots, largest variance of one that
 counts, and least and largest variance of all.
 """
+BETWEEN_ROWS = 0.45
+"""Offset over the pitch of rows from which the array is between them."""
 NEAR_MM = 3.0
 """Way from the middle of a cell within which the fit counts for it."""
 
@@ -62,7 +64,8 @@ NEAR_MM = 3.0
 @dataclass(frozen=True)
 class PassedCell:
     """A cell as the hypotheses have it: number, the most likely one (-1 where none was seen), its probability, time
-    at which the array's middle passed it, and the worst fit meanwhile.
+    at which the array's middle passed it, the worst fit meanwhile, and whether the array was half a row aside, where
+    every dot lies between two rows of segments and each side looks like the other.
     """
 
     number: int
@@ -70,6 +73,7 @@ class PassedCell:
     probability: float
     time_s: float
     worst_fit: float
+    is_between_rows: bool
 
 
 @dataclass
@@ -93,6 +97,7 @@ class LineFilter:
     _safe_drift: Floats | None = None
     _safe_log_speed: float = 0.0
     _fits: dict[int, float] = field(default_factory=dict)
+    _asides: dict[int, float] = field(default_factory=dict)
     _products: Floats | None = None
 
     def __post_init__(self) -> None:
@@ -226,6 +231,7 @@ class LineFilter:
         for number in range(max(rear, self.emitted), rear + 2):
             if abs(self.place_mm - middle - number * pitch) <= NEAR_MM:
                 self._fits[number] = max(self._fits.get(number, 0.0), self.fit)
+                self._asides[number] = max(self._asides.get(number, 0.0), abs(self.offset_mm))
 
     def _look_for_the_track(self, charge_pC: Floats) -> None:
         """Start anew where the fit is bad, beside the hypotheses so far."""
@@ -270,10 +276,11 @@ class LineFilter:
         share = np.bincount(np.where(known, (first & 7) | (second & 7) << 3, 64), weight, 1 << DOTS | 1)
         cell = int(np.argmax(share[:64]))
         fit = self._fits.pop(number, self.fit)
+        between = self._asides.pop(number, 0.0) > BETWEEN_ROWS * self.table.dot_pitch_mm
         time = self._times.popleft() if self._times else self._now_s
         if share[64] >= 0.5:
-            return PassedCell(number, -1, 0.0, time, fit)
-        return PassedCell(number, cell, float(share[cell]), time, fit)
+            return PassedCell(number, -1, 0.0, time, fit, between)
+        return PassedCell(number, cell, float(share[cell]), time, fit, between)
 
 
 def _column(columns: np.ndarray, seen: np.ndarray, number: int) -> np.ndarray:

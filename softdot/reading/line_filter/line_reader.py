@@ -32,6 +32,8 @@ DRIFT_SHARE = 7e-4
 """Least standard deviation of the drift in a step, over the largest charge of one dot."""
 SLOPE_V_PER_S, SLOPES = 3e-4, 2.0
 """By how much a resting voltage is taken to change in a second, at least and over what the first seconds say."""
+LOST_PROBABILITY, ASIDE_PROBABILITY = 0.5, 0.85
+"""Of a cell at most where the fit was bad, and where the array was between two rows of dots."""
 CERTAIN = 0.9
 """Least probability of a cell that is given out as read."""
 
@@ -275,8 +277,10 @@ class LineReader:
 
 
 def stated_probability(passed: PassedCell) -> float:
-    """The probability that a cell is right: that of the hypotheses, at most a half where the fit was bad."""
-    return min(passed.probability, 0.5) if passed.worst_fit > LOST_FIT else passed.probability
+    """The probability that a cell is right: that of the hypotheses, less where the fit was bad or the array aside."""
+    if passed.worst_fit > LOST_FIT:
+        return min(passed.probability, LOST_PROBABILITY)
+    return min(passed.probability, ASIDE_PROBABILITY) if passed.is_between_rows else passed.probability
 
 
 def _circuit(kernel: ArrayKernel, readout: Readout, used: np.ndarray) -> tuple[Floats, Floats]:
