@@ -42,9 +42,9 @@ HEIGHT_MEAN, HEIGHT_SPREAD = 0.9, 0.25
 ROUGH_SHARE, DEGREES = 0.15, 4.0
 """Standard deviation of a charge over the charge, and degrees of freedom of Student's t."""
 KEPT_LOG, MOST_KEPT, EARLY_KEPT = 11.0, 1500, 12_000
-SPEED_FACTOR, SPEEDS = 3.0, 9
+SPEED_FACTOR, SPEEDS = 2.2, 7
 """Factor about a rough speed within which speeds are tried, and their number."""
-FARTHEST_SHARE, NEAREST_MM, ENTRY_STEP_MM = 1.0, 0.4, 0.2
+FARTHEST_SHARE, NEAREST_MM, ENTRY_STEP_MM = 1.4, 0.4, 0.3
 """Distance at which the first column may be seen first: of half the window, and the nearest."""
 OFFSET_SPREAD_MM, YAW_SPREAD_DEG = 0.7, 6.0
 """Standard deviations of the posture at the beginning, assumed."""
