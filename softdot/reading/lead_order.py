@@ -52,7 +52,7 @@ def _log_shares() -> np.ndarray:
     share = np.full(KINDS_OF_CELL, (1.0 - LETTERS_SHARE) / (KINDS_OF_CELL - 1))
     for letter, percent in LETTERS.items():
         share[cells_of(letter)[0]] += LETTERS_SHARE * percent / sum(LETTERS.values())
-    return np.log(share / share[1:].sum())
+    return np.asarray(np.log(share / share[1:].sum()))
 
 
 def _orders() -> dict[str, Ints]:

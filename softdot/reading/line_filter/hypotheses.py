@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from itertools import product
 from math import log, sqrt
+from typing import Any
 
 import numpy as np
 
@@ -110,7 +111,9 @@ def _blank_columns(is_mirrored: bool) -> Floats:
 
 def early_settings(step_s: float, is_mirrored: bool) -> HandMotion:
     """The motion over the first column: what is rare is left out, and more hypotheses are kept."""
-    rare = dict.fromkeys(("log_jump", "log_stop", "log_back", "log_aside", "log_turn", "log_lift"), -1e9)
+    rare: dict[str, Any] = dict.fromkeys(
+        ("log_jump", "log_stop", "log_back", "log_aside", "log_turn", "log_lift"), -1e9
+    )
     return settings(step_s, is_mirrored)._replace(most_kept=EARLY_KEPT, **rare)
 
 
