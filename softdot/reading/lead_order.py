@@ -19,7 +19,7 @@ LETTERS = {
 """Per cent of the letters of English texts (Lewand, Cryptological Mathematics, 2000)."""
 LETTERS_SHARE = 0.85
 """Of the cells with dots, assumed; the others share the rest alike."""
-LEAST_CELLS = 12
+LEAST_CELLS = 10
 """With dots from which a row without any is told."""
 LEAST_NATS, LEAST_NATS_A_CELL, LIKE_TEXT = 12.0, 0.3, -3.8
 """Log-likelihood by which cells must be more usual in another order, in all and for each, and least one of a cell in
