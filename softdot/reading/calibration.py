@@ -127,7 +127,7 @@ def _grid(reader: Reader, count: int) -> Floats:
 def _charges_along(kernel: ArrayKernel, reader: Reader, cells: Ints, place: Floats, offset_mm: float) -> Floats:
     """Charges (p, n) at places (p,) along the line of nominal dots."""
     depth = np.full(len(place), DEFAULT_SHARE_OF_DEPTH * float(kernel.depth_mm[-1]))
-    path = ArrayPath(np.arange(len(place)), place, np.full(len(place), offset_mm), depth, 0.0, np.zeros(len(cells)))
+    path = ArrayPath(np.arange(float(len(place))), place, np.full(len(place), offset_mm), depth, 0.0, np.zeros(len(cells)))
     return charges_pC(kernel, nominal_line(cells, reader.standard), path)
 
 

@@ -85,10 +85,10 @@ class MaterialPoint:
         peak_before : largest energy of the specimen in earlier runs, MPa. NoEquilibriumError.
         """
         test = _CouponRun(self, drive, kind == "displacement_mm", self.relaxation(time_s), peak_before)
-        for start in (near, test.initial_unknowns()):
-            if start is not None:
-                with suppress(NoEquilibriumError):
-                    return test.answer_near(start)
+        start = test.initial_unknowns()
+        for nearby in (start,) if near is None else (near, start):
+            with suppress(NoEquilibriumError):
+                return test.answer_near(nearby)
         for share in DRIVE_SHARES:
             start = replace(test, drive=share * drive).answer_near(start).unknown
         return test.answer_near(start)
