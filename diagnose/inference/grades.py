@@ -15,7 +15,7 @@ class Thresholds:
     """All thresholds, in one place.
 
     level : chance per recording of a mismatch where there is none.
-    nothing : probability of nothing from which on it is not excluded.
+    nothing : probability of nothing from which on it is not excluded, where what the best takes away is not visible.
     rival : probability of an explanation, against the best one, from which on it is not excluded.
     sure : probability from which on something else is certain.
     most, nearly_all : shares of the held-out excess for a main part, and for an identified explanation.
@@ -73,6 +73,11 @@ class Evidence:
         """Whether something without mechanics predicts better for sure, and in practice."""
         better = 1.0 - self.share_of_else < 0.5 * (1.0 - self.share)
         return self.something_else > THRESHOLDS.sure and better and self.error > THRESHOLDS.visible
+
+    @property
+    def is_visible(self) -> bool:
+        """Whether what the best takes away from conditions that were left out is more than the flaws of a rig."""
+        return self.error_before**2 - self.error**2 > THRESHOLDS.visible**2
 
     @property
     def holds(self) -> bool:
@@ -135,8 +140,10 @@ def no_explanation(e: Evidence) -> Verdict | None:
 
 
 def nothing_predicts(e: Evidence) -> Verdict | None:
-    """The simulation alone predicts as well as the best explanation, as far as these recordings tell."""
-    if e.nothing <= THRESHOLDS.nothing:
+    """The simulation alone predicts as well as the best explanation: it may be likelier in details, and leaves no more
+    in practice.
+    """
+    if e.nothing <= THRESHOLDS.nothing or e.is_visible:
         return None
     return Unexplained((f"{e.best} may predict what was held out no better than your simulation does.",))
 
