@@ -21,6 +21,7 @@ class Thresholds:
     most, nearly_all : shares of the held-out excess for a main part, and for an identified explanation.
     confirmed : the same share where all is fitted anew to half of the presses and shown on the others.
     visible : error over the signal that flaws of an ordinary rig make.
+    closer : share of the squares of an error that must be gone for another explanation to be closer.
     left : error over the signal that an identified explanation may leave at most.
     largest_group : number of explanations that may stay together for a name to be given.
     """
@@ -33,11 +34,19 @@ class Thresholds:
     nearly_all: float = 0.95
     confirmed: float = 0.8
     visible: float = VISIBLE_ERROR
+    closer: float = 0.5
     left: float = 0.1
     largest_group: int = RATES.largest_group
 
 
 THRESHOLDS = Thresholds()
+
+
+def takes_away(before: float, after: float) -> bool:
+    """Whether errors over the signal show an explanation in practice: half of the squares are gone, and no less than
+    what is visible, since less may be a flaw of the rig.
+    """
+    return before**2 - after**2 >= max(THRESHOLDS.closer * before**2, THRESHOLDS.visible**2)
 
 
 @dataclass(frozen=True)
@@ -76,8 +85,8 @@ class Evidence:
 
     @property
     def is_visible(self) -> bool:
-        """Whether what the best takes away from conditions that were left out is more than the flaws of a rig."""
-        return self.error_before**2 - self.error**2 > THRESHOLDS.visible**2
+        """Whether what the best takes away from conditions that were left out counts in practice."""
+        return takes_away(self.error_before, self.error)
 
     @property
     def holds(self) -> bool:

@@ -22,7 +22,7 @@ from diagnose.fit.rig_discrepancy import VISIBLE_ERROR, RigDiscrepancy, played
 from diagnose.fit.samples import SampleBlock, Samples
 from diagnose.forward import Candidate, NoAnswerError
 from diagnose.inference.conditions import conditions_of
-from diagnose.inference.grades import THRESHOLDS
+from diagnose.inference.grades import THRESHOLDS, takes_away
 from diagnose.inference.held_out_scores import USUAL_SHAPE, HeldOutScorer, LinearHypothesis, Scored
 from diagnose.inference.screening import Screening
 from diagnose.inference.search import first_fits, paired, pairs, singles
@@ -33,10 +33,8 @@ from foundation.progress import Report
 
 MOST_MECHANISMS = 3
 MOST_FIRSTS = 3  # hypotheses beside which another mechanism is sought
-WORTH_NATS, WORTH_SHARE = 3.0, 0.5
-"""What another mechanism must gain, over all conditions, to be a hypothesis beside those that it is added to, and the
-share of the squares of what they leave that it must take away: these and no less than VISIBLE_ERROR, since less may be
-a flaw of the rig."""
+WORTH_NATS = 3.0
+"""What another mechanism must gain, over all conditions, to be a hypothesis beside those that it is added to."""
 PART_SHARE = 0.5  # of the share of the best: what accounts for less is sought beside it, not it beside others
 PLAY_SHARES = (0.05, 0.15, 0.4)  # of the range of a drive: thresholds of the play operators of something else
 FLAT = 1e6  # sigma of the noise over all samples: a prior for what has none
@@ -194,6 +192,10 @@ class Judge:
         """Root mean square error of a hypothesis in conditions left out, above noise, of the worst channel."""
         return self.errors.largest(one.left)
 
+    def is_closer(self, one: Hypothesis, other: Hypothesis) -> bool:
+        """Whether one is closer in practice to conditions that were left out than another."""
+        return takes_away(self.error(other), self.error(one))
+
 
 def compared(judge: Judge, rng: np.random.Generator, report: Report) -> Compared:
     """All hypotheses of a recording, the best first."""
@@ -204,13 +206,13 @@ def compared(judge: Judge, rng: np.random.Generator, report: Report) -> Compared
         # what predicts with more error than nothing explains nothing, whatever its score
         found += [one for one in judge.scored([fit]) if judge.share(one) > 0.0]
     grown = _best_first(found)
-    while grown and len(grown[0].candidates) < MOST_MECHANISMS and _leaves_too_much(judge, grown[0]):
+    while grown and len(grown[0].candidates) < MOST_MECHANISMS and _least_error(judge, grown) > VISIBLE_ERROR:
         more = _with_one_more(judge, grown, report)
         if not more:
             break
         found += more
         grown = _best_first([*more, *grown])
-    ordered = _sound_first(found)
+    ordered = _in_order(judge, found)
     scores = [one.scored.log_scores for one in (*ordered, judge.nothing, judge.something_else)]
     probabilities = held_out_probabilities(np.array(scores), rng)
     if ordered:
@@ -218,6 +220,23 @@ def compared(judge: Judge, rng: np.random.Generator, report: Report) -> Compared
         order = [first, *(n for n in range(len(scores)) if n != first)]
         ordered, probabilities = [ordered[n] for n in order[: len(ordered)]], probabilities[order]
     return Compared(judge, tuple(ordered), judge.nothing, judge.something_else, probabilities)
+
+
+def _in_order(judge: Judge, found: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """The likeliest first, before all than which another one is closer in practice: what is likelier in details and
+    leaves more explains less. Of those that score alike, first what needs no implausible value and has few coordinates.
+    """
+    close = [one for one in found if not any(judge.is_closer(other, one) for other in found)]
+    least = max((one.score for one in close), default=0.0) - WORTH_NATS
+
+    def rank(one: Hypothesis) -> tuple[bool, bool, bool, int, float]:
+        is_close = any(one is other for other in close)
+        is_alike = is_close and one.score > least
+        count = sum(len(candidate.coordinates) for candidate in one.candidates)
+        implies = bool(implausible(one.fit))
+        return not is_close, not is_alike, is_alike and implies, count if is_alike else 0, -one.score
+
+    return sorted(found, key=rank)
 
 
 def _simplest(judge: Judge, ordered: Sequence[Hypothesis], probabilities: Floats) -> int:
@@ -228,11 +247,13 @@ def _simplest(judge: Judge, ordered: Sequence[Hypothesis], probabilities: Floats
 
 
 def as_good(judge: Judge, ordered: Sequence[Hypothesis], probabilities: Floats, number: int) -> bool:
-    """Whether an explanation is not excluded beside the first: it is probable, or its forecast differs by no more than
-    those of two good codes.
+    """Whether an explanation is not excluded beside the first: it is probable beside the likeliest and the first is not
+    closer in practice, or its forecast differs from that of the first by no more than those of two good codes.
     """
-    least = THRESHOLDS.rival * float(probabilities[0] + probabilities[number])
-    return float(probabilities[number]) > least or judge.apart(ordered[0], ordered[number]) < USUAL_SHAPE
+    first, other = ordered[0], ordered[number]
+    least = THRESHOLDS.rival * float(probabilities[: len(ordered)].max() + probabilities[number])
+    probable = float(probabilities[number]) > least and not judge.is_closer(first, other)
+    return probable or judge.apart(first, other) < USUAL_SHAPE
 
 
 def implausible(fit: Fitted | None) -> tuple[str, ...]:
@@ -246,15 +267,9 @@ def implausible(fit: Fitted | None) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _sound_first(found: Sequence[Hypothesis]) -> list[Hypothesis]:
-    """The best first; one that needs an implausible value comes after all that are not worse for sure."""
-    ordered = _best_first(found)
-    sound = [one for one in ordered if not implausible(one.fit) and one.score > ordered[0].score - WORTH_NATS]
-    return [*sound, *(one for one in ordered if one not in sound)] if sound else ordered
-
-
-def _leaves_too_much(judge: Judge, one: Hypothesis) -> bool:
-    return judge.error(one) > VISIBLE_ERROR
+def _least_error(judge: Judge, found: Sequence[Hypothesis]) -> float:
+    """Of those with as many mechanisms as the first."""
+    return min(judge.error(one) for one in found if len(one.candidates) == len(found[0].candidates))
 
 
 def _with_one_more(judge: Judge, found: Sequence[Hypothesis], report: Report) -> list[Hypothesis]:
@@ -269,9 +284,10 @@ def _with_one_more(judge: Judge, found: Sequence[Hypothesis], report: Report) ->
             if (names := frozenset(c.name for c in fit.candidates)) not in seen:
                 seen.add(names)
                 more += judge.scored([fit])
-    more = _worth_it(judge, more, best)
+    least = _least_error(judge, found)
+    more = _worth_it(judge, more, best, least)
     if more and size == 1:
-        more += _worth_it(judge, _in_its_place(judge, found, more[0], seen, report), best)
+        more += _worth_it(judge, _in_its_place(judge, found, more[0], seen, report), best, least)
     return _best_first(more)
 
 
@@ -280,11 +296,11 @@ def _is_a_part(judge: Judge, one: Hypothesis, best: Hypothesis) -> bool:
     return judge.share(one) >= PART_SHARE * judge.share(best)
 
 
-def _worth_it(judge: Judge, more: Sequence[Hypothesis], best: Hypothesis) -> list[Hypothesis]:
-    """Those that predict better than what they are added to for sure, and in practice."""
-    left = judge.error(best) ** 2
-    most = left - max(WORTH_SHARE * left, VISIBLE_ERROR**2)
-    return _best_first([one for one in more if one.score > best.score + WORTH_NATS and judge.error(one) ** 2 <= most])
+def _worth_it(judge: Judge, more: Sequence[Hypothesis], best: Hypothesis, least: float) -> list[Hypothesis]:
+    """Those that predict better than the best with fewer mechanisms for sure, and are closer than all of these."""
+    return _best_first(
+        [one for one in more if one.score > best.score + WORTH_NATS and takes_away(least, judge.error(one))]
+    )
 
 
 def _in_its_place(
