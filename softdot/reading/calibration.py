@@ -13,7 +13,7 @@ from scipy.optimize import linear_sum_assignment
 from foundation.arrays import Floats, Ints
 from foundation.errors import InputError
 from softdot.arrays.kernel import ArrayKernel
-from softdot.reading.calibration_file import Calibration, Interval, widened
+from softdot.reading.calibration_file import Calibration, MeasuredValue, widened
 from softdot.reading.conditions import DEFAULT_SHARE_OF_DEPTH
 from softdot.reading.line import cell_pitch_mm, nominal_line
 from softdot.reading.line_filter.charge import noise_V
@@ -69,7 +69,7 @@ def calibrate(reader: Reader, heard: Voltages, cells: Ints) -> Calibration:
 
 
 @dataclass(frozen=True)
-class _Fit:
+class _LineFit:
     """Course (t,) along the line, leads of the segments (n,), offset, width, and share of the charges explained."""
 
     course_mm: Floats
@@ -99,7 +99,7 @@ def _charges(reader: Reader, heard: Voltages, cells: int) -> _Heard:
     return _Heard(mean, np.stack([np.ones(count), time, time**2], axis=1))
 
 
-def _fitted(reader: Reader, heard: _Heard, cells: Ints, leftward: bool) -> _Fit:
+def _fitted(reader: Reader, heard: _Heard, cells: Ints, leftward: bool) -> _LineFit:
     """The best course in one direction, with order, offset and width."""
     grid = _grid(reader, len(cells))
     table = _charges_along(reader.kernel, reader, cells, grid, 0.0)
@@ -115,7 +115,7 @@ def _fitted(reader: Reader, heard: _Heard, cells: Ints, leftward: bool) -> _Fit:
     gain, drift = _gains(heard, table[course], order)
     rest = heard.charge_pC[:, order] - drift - gain * table[course]
     fit = 1.0 - float((rest**2).sum() / ((heard.charge_pC[:, order] - drift) ** 2).sum())
-    return _Fit(grid[course], order, offset, width, fit, leftward, table[course])
+    return _LineFit(grid[course], order, offset, width, fit, leftward, table[course])
 
 
 def _grid(reader: Reader, count: int) -> Floats:
@@ -127,7 +127,9 @@ def _grid(reader: Reader, count: int) -> Floats:
 def _charges_along(kernel: ArrayKernel, reader: Reader, cells: Ints, place: Floats, offset_mm: float) -> Floats:
     """Charges (p, n) at places (p,) along the line of nominal dots."""
     depth = np.full(len(place), DEFAULT_SHARE_OF_DEPTH * float(kernel.depth_mm[-1]))
-    path = ArrayPath(np.arange(float(len(place))), place, np.full(len(place), offset_mm), depth, 0.0, np.zeros(len(cells)))
+    path = ArrayPath(
+        np.arange(float(len(place))), place, np.full(len(place), offset_mm), depth, 0.0, np.zeros(len(cells))
+    )
     return charges_pC(kernel, nominal_line(cells, reader.standard), path)
 
 
@@ -210,7 +212,7 @@ def _least(values: Floats, squares: Floats) -> float:
     return float(values[middle] + np.clip(shift, -1.0, 1.0) * (values[1] - values[0]))
 
 
-def _told(heard: Voltages, charges: _Heard, found: _Fit, cells: int, config_hash: str) -> Calibration:
+def _told(heard: Voltages, charges: _Heard, found: _LineFit, cells: int, config_hash: str) -> Calibration:
     """The calibration of a fit; intervals are of means over parts of the line."""
     gain, _ = _gains(charges, found.predicted, found.order)
     parts = [np.arange(len(charges.charge_pC))[k * len(charges.charge_pC) // PARTS :][: len(charges.charge_pC) // PARTS]
@@ -237,7 +239,7 @@ def _quiet_noise_V(voltage_V: Floats) -> Floats:
     return np.asarray(np.quantile([noise_V(part) for part in parts], 0.1, axis=0))
 
 
-def _interval(value: float, parts: Floats) -> Interval:
+def _interval(value: float, parts: Floats) -> MeasuredValue:
     """A value with the 95 % interval that values of parts of the line give."""
     half = STUDENT * float(parts.std(ddof=1)) / np.sqrt(len(parts))
-    return Interval(value=float(value), low=float(value - half), high=float(value + half))
+    return MeasuredValue(value=float(value), low=float(value - half), high=float(value + half))

@@ -19,7 +19,7 @@ JSON = "calibration.json"
 AGAIN = "make it again by softdot read --calibrate"
 
 
-class Interval(BaseModel):
+class MeasuredValue(BaseModel):
     """A value with its 95 % interval."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -42,8 +42,8 @@ class Calibration(BaseModel):
     order: list[int]
     dead: list[int]
     polarity: list[Literal[-1, 1]]
-    gain: list[Interval]
-    scale: Interval
+    gain: list[MeasuredValue]
+    scale: MeasuredValue
     width: Positive
     noise_mV: list[Finite]
     offset_mm: Finite

@@ -1,10 +1,4 @@
-"""One step of all hypotheses: they move, meet columns of dots, are weighed by the charges, merged and thinned out.
-
-The numbers of a hypothesis lie in rows of three arrays: state (h, 4) and choice (h, 6) by the names below, and memory
-(h, 24 + 2 n): heights of the dots of the last four columns as shares of a nominal charge, the variances of these, and
-level and rate of the drift of each channel. Columns of dots that were seen are kept sixteen at a time, four bits each,
-the last one lowest; 8 stands for a column that passed without contact.
-"""
+"""One step of all hypotheses: they move, meet columns of dots, are weighed by the charges, merged and thinned out."""
 
 from typing import NamedTuple
 
@@ -12,15 +6,32 @@ import numba as nb
 import numpy as np
 
 from foundation.arrays import Bools, Floats
+from softdot.reading.line_filter.hypothesis_arrays import (
+    BACK,
+    COLUMNS,
+    FORTH,
+    HEIGHT,
+    KEPT_HEIGHTS,
+    LEVEL,
+    LOG_SPEED,
+    LOG_WEIGHT,
+    MEAN_LOG_SPEED,
+    OFFSET,
+    PLACE,
+    ROWS,
+    SEEN,
+    SPREAD,
+    STILL,
+    TOUCH,
+    UNSEEN,
+    WAY,
+    YAW,
+    column_of,
+    kind_before,
+)
+from softdot.reading.line_filter.merging import merged
 from solve.compiled import MATH, piece
 
-PLACE, LOG_SPEED, MEAN_LOG_SPEED, LOG_WEIGHT = range(4)
-WAY, OFFSET, YAW, TOUCH, SEEN, COLUMNS = range(6)
-UNSEEN, KEPT_COLUMNS = 8, 16
-ROWS, KEPT_HEIGHTS = 3, 4
-HEIGHT, SPREAD, LEVEL = 0, ROWS * KEPT_HEIGHTS, 2 * ROWS * KEPT_HEIGHTS
-"""Places in the memory; of the rate of the drift n behind its level."""
-FORTH, STILL, BACK = 1, 0, -1
 MOST_CHILDREN = 60_000
 """Room for the children of a step; those beyond are not looked at."""
 MOST_OPTIONS = 12
@@ -28,8 +39,6 @@ RARE_STEPS = 3
 """What a hand does rarely is tried in one of so many steps, as often as if it were tried in all of them."""
 CHANCE, CHANGE, NEW_WAY, ASIDE, TURN, CONTACT = range(6)
 """Columns of the ways in which a hypothesis may go on: log-probability, and what changes."""
-PLACE_BIN_MM, SPEED_BIN = 0.12, 0.18
-"""Within these two hypotheses are merged."""
 OLD_MM = 1.8
 """Way behind the array's middle at which a column that passed without contact is looked at no more."""
 LARGEST_RESIDUAL = 3.0
@@ -63,9 +72,9 @@ class HandMotion(NamedTuple):
     """Log-probabilities of a step, and constants of the weights.
 
     faster, jump : steps of the log-speed; relax, settle : shares of the way of log-speed and mean to each other in a
-    step. log_blank, log_dots (4,) : of a blank column, and of each other pattern, by the kind of _kind; log_unseen : of
-    one that passes without contact. height, height_spread : mean and variance of the height of dots, as shares of the
-    nominal charge. rough : standard deviation of a charge over the charge; degrees : of Student's t. kept_log,
+    step. log_blank, log_dots (4,) : of a blank column, and of each other pattern, by what kind_before says; log_unseen :
+    of one that passes without contact. height, height_spread : mean and variance of the height of dots, as shares of
+    the nominal charge. rough : standard deviation of a charge over the charge; degrees : of Student's t. kept_log,
     most_kept : how far behind the best, and how many hypotheses are kept.
     """
 
@@ -92,15 +101,6 @@ class HandMotion(NamedTuple):
     degrees: float
     kept_log: float
     most_kept: int
-
-
-@nb.njit(cache=True)
-def column_of(columns, seen, number):  # type: ignore[no-untyped-def]
-    """The pattern of a column by its number; blank before the first one and where it is kept no more."""
-    back = seen - 1 - number
-    if number < 0 or back >= KEPT_COLUMNS:
-        return 0
-    return (columns >> (4 * back)) & 15
 
 
 @piece()
@@ -199,21 +199,21 @@ def advance(state, choice, memory, measured, temper, may_touch, turn, sensor, se
             )  # fmt: skip
             for child in range(begin, count):
                 parent[child] = h
-    merged = _merged(made, made_choice, count, top)
-    weight = _weigh(made, made_choice, memory, parent, fresh, merged, measured, temper, sensor, settings)
-    chosen = merged[_best_ones(weight, settings)]
+    agreed = merged(made, made_choice, count, top)
+    weight = _weigh(made, made_choice, memory, parent, fresh, agreed, measured, temper, sensor, settings)
+    chosen = agreed[_best_ones(weight, settings)]
     kept_state, kept_choice, kept_memory = made[chosen], made_choice[chosen], memory[parent[chosen]]
     _remember(kept_state, kept_choice, kept_memory, fresh[chosen], measured, temper, sensor, settings)
     return kept_state, kept_choice, kept_memory, _log_sum(kept_state[:, LOG_WEIGHT]) - _log_sum(state[:, LOG_WEIGHT])
 
 
 @nb.njit(cache=True)
-def _weigh(made, made_choice, memory, parent, fresh, merged, measured, temper, sensor, settings):  # type: ignore[no-untyped-def]
+def _weigh(made, made_choice, memory, parent, fresh, agreed, measured, temper, sensor, settings):  # type: ignore[no-untyped-def]
     """Add the evidence of charges (n,) to the weights of children that stand for others (k,), and return these (k,)."""
     found, rest = np.empty((4, 2 * ROWS)), np.empty(measured.shape[0])
-    weight = np.empty(len(merged))
-    for k in range(len(merged)):
-        child = merged[k]
+    weight = np.empty(len(agreed))
+    for k in range(len(agreed)):
+        child = agreed[k]
         row, first, pattern = _pattern(made[child, PLACE], made_choice, child, sensor)
         at = (made_choice[child, YAW], row, made_choice[child, OFFSET])
         dots = _take_heights(memory, parent[child], first, pattern, fresh[child], settings, found)
@@ -305,17 +305,6 @@ def _fill_options(options, way, touch, may_touch, turn, settings):  # type: igno
 
 
 @piece()
-def _kind(columns, seen, number):  # type: ignore[no-untyped-def]
-    """What is known before a column: 0, 1 for the first one of a cell, behind a cell with dots or a blank one; 2, 3 for
-    the second one, behind a column with dots or a blank one.
-    """
-    before = column_of(columns, seen, number - 1) == 0
-    if number % 2:
-        return 3 if before else 2
-    return 1 if before and column_of(columns, seen, number - 2) == 0 else 0
-
-
-@piece()
 def _children(state, choice, h, options, touch, way, one, made, made_choice, fresh, count, sensor, settings):  # type: ignore[no-untyped-def]
     """Add hypothesis h as it went on in one way, once for each pattern that a new column may have; their number."""
     option = options[touch, way, one]
@@ -345,11 +334,11 @@ def _children(state, choice, h, options, touch, way, one, made, made_choice, fre
             if is_new and touch == 0:
                 chance += settings.log_unseen
             if rears == 8:
-                kind = _kind(own, seen, first)
+                kind = kind_before(own, seen, first)
                 own = own ^ ((UNSEEN ^ a) << (4 * (seen - 1 - first)))
                 chance += settings.log_blank[kind] if a == 0 else settings.log_dots[kind]
             if fronts == 8:
-                kind = _kind(own, seen, first + 1)
+                kind = kind_before(own, seen, first + 1)
                 own = own ^ ((UNSEEN ^ b) << (4 * (seen - 2 - first)))
                 chance += settings.log_blank[kind] if b == 0 else settings.log_dots[kind]
             made[count, PLACE], made[count, LOG_SPEED], made[count, MEAN_LOG_SPEED] = place, speed, mean
@@ -359,50 +348,6 @@ def _children(state, choice, h, options, touch, way, one, made, made_choice, fre
             fresh[count] = (REAR if rears == 8 else 0) | (FRONT if fronts == 8 else 0)
             count += 1
     return count
-
-
-@nb.njit(cache=True)
-def _merged(made, made_choice, count, top):  # type: ignore[no-untyped-def]
-    """Numbers of the children that stand for all that agree: the likeliest, with the weighed mean of the motions."""
-    size = 64
-    while size < 2 * count:
-        size *= 2
-    slots = np.full(size, -1, dtype=np.int64)
-    keys, kept = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64)
-    total, most = np.zeros((count, 4)), np.empty(count)
-    number = 0
-    for child in range(count):
-        key = _key(made[child], made_choice[child])
-        slot = key & (size - 1)
-        while slots[slot] >= 0 and keys[slots[slot]] != key:
-            slot = (slot + 1) & (size - 1)
-        own = np.exp(made[child, LOG_WEIGHT] - top)
-        if slots[slot] < 0:
-            slots[slot], keys[number], kept[number], most[number] = number, key, child, own
-            number += 1
-        same = slots[slot]
-        if own > most[same]:
-            kept[same], most[same] = child, own
-        for part in range(LOG_WEIGHT):
-            total[same, part] += own * made[child, part]
-        total[same, LOG_WEIGHT] += own
-    for k in range(number):
-        for part in range(LOG_WEIGHT):
-            made[kept[k], part] = total[k, part] / total[k, LOG_WEIGHT]
-        made[kept[k], LOG_WEIGHT] = top + np.log(total[k, LOG_WEIGHT])
-    return kept[:number]
-
-
-@piece()
-def _key(state, choice):  # type: ignore[no-untyped-def]
-    """A number that hypotheses share which agree in all that decides how they go on."""
-    key = np.int64(np.floor(state[PLACE] / PLACE_BIN_MM))
-    for part in (
-        np.int64(np.floor(state[LOG_SPEED] / SPEED_BIN)), choice[WAY], choice[OFFSET], choice[YAW], choice[TOUCH],
-        choice[SEEN], choice[COLUMNS] & 0xFFFF,
-    ):  # fmt: skip
-        key = (key ^ (key >> 29)) * np.int64(0x3F58476D1CE4E5B9) + part + np.int64(0x1E3779B97F4A7C15)
-    return key ^ (key >> 31)
 
 
 @nb.njit(cache=True)

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from foundation.arrays import Floats, Ints
-from softdot.reading.line_filter.beam import (
+from softdot.reading.line_filter.beam import RARE_STEPS, HandMotion
+from softdot.reading.line_filter.hypothesis_arrays import (
     COLUMNS,
     FORTH,
     HEIGHT,
@@ -16,12 +17,10 @@ from softdot.reading.line_filter.beam import (
     LEVEL,
     OFFSET,
     PLACE,
-    RARE_STEPS,
     SEEN,
     SPREAD,
     UNSEEN,
     YAW,
-    HandMotion,
 )
 from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, LineTable, column_mm
 

@@ -7,7 +7,9 @@ import numpy as np
 
 from foundation.arrays import Floats
 from softdot.reading.cells import DOTS
-from softdot.reading.line_filter.beam import (
+from softdot.reading.line_filter.beam import MOST_CHILDREN, RARE_STEPS, Sensor, advance, predicted_charges, weighed
+from softdot.reading.line_filter.hypotheses import Beam, anywhere, early_settings, settings
+from softdot.reading.line_filter.hypothesis_arrays import (
     COLUMNS,
     HEIGHT,
     KEPT_COLUMNS,
@@ -15,10 +17,8 @@ from softdot.reading.line_filter.beam import (
     LEVEL,
     LOG_SPEED,
     LOG_WEIGHT,
-    MOST_CHILDREN,
     OFFSET,
     PLACE,
-    RARE_STEPS,
     ROWS,
     SEEN,
     SPREAD,
@@ -27,12 +27,7 @@ from softdot.reading.line_filter.beam import (
     UNSEEN,
     WAY,
     YAW,
-    Sensor,
-    advance,
-    predicted_charges,
-    weighed,
 )
-from softdot.reading.line_filter.hypotheses import Beam, anywhere, early_settings, settings
 from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, LineTable
 
 LAG_COLUMNS, FIRST_COLUMNS = 4, 12

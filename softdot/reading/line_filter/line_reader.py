@@ -8,10 +8,11 @@ from foundation.arrays import Floats
 from foundation.errors import InputError
 from geometry.braille_standards import BrailleStandard
 from softdot.arrays.kernel import ArrayKernel
-from softdot.reading.line_filter.beam import LEVEL, Sensor
+from softdot.reading.line_filter.beam import Sensor
 from softdot.reading.line_filter.channels import Channels, first_signal, measured_channels
 from softdot.reading.line_filter.charge import ChargeBlocks
 from softdot.reading.line_filter.hypotheses import Beam, anywhere, at_the_first_column
+from softdot.reading.line_filter.hypothesis_arrays import LEVEL
 from softdot.reading.line_filter.line_filter import FLOOR_SHARE, LOST_FIT, LineFilter, PassedCell
 from softdot.reading.line_filter.mains import BANDWIDTH_HZ, FREQUENCY, hum_frequency_Hz, hum_state, without_hum
 from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, LineTable, line_table

@@ -4,7 +4,7 @@ from typing import Any
 
 from softdot.commands.list import LISTS
 from softdot.commands.new import UNITS
-from softdot.config.schema import config_schema
+from softdot.config.schema import Config
 from solve.mechanisms import MECHANISMS
 from solve.mechanisms.base import MechanismType
 
@@ -12,7 +12,7 @@ from solve.mechanisms.base import MechanismType
 def form() -> dict[str, Any]:
     """Schema of the configuration, endings of keys and their units, materials, standards, mechanisms."""
     return {
-        "schema": config_schema(),
+        "schema": Config.model_json_schema(),
         "units": UNITS,
         **{what: LISTS[what]() for what in ("materials", "standards")},
         "mechanisms": [_mechanism(kind) for kind in MECHANISMS.values()],

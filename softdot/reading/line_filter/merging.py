@@ -1,0 +1,64 @@
+"""Hypotheses that agree are one: the likeliest stands for all, with the weighed mean of their motions."""
+
+import numba as nb
+import numpy as np
+
+from softdot.reading.line_filter.hypothesis_arrays import (
+    COLUMNS,
+    LOG_SPEED,
+    LOG_WEIGHT,
+    OFFSET,
+    PLACE,
+    SEEN,
+    TOUCH,
+    WAY,
+    YAW,
+)
+from solve.compiled import piece
+
+PLACE_BIN_MM, SPEED_BIN = 0.12, 0.18
+"""Within these two hypotheses are merged."""
+
+
+@nb.njit(cache=True)
+def merged(made, made_choice, count, top):  # type: ignore[no-untyped-def]
+    """Numbers of the children that stand for all that agree: the likeliest, with the weighed mean of the motions."""
+    size = 64
+    while size < 2 * count:
+        size *= 2
+    slots = np.full(size, -1, dtype=np.int64)
+    keys, kept = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64)
+    total, most = np.zeros((count, 4)), np.empty(count)
+    number = 0
+    for child in range(count):
+        key = _key(made[child], made_choice[child])
+        slot = key & (size - 1)
+        while slots[slot] >= 0 and keys[slots[slot]] != key:
+            slot = (slot + 1) & (size - 1)
+        own = np.exp(made[child, LOG_WEIGHT] - top)
+        if slots[slot] < 0:
+            slots[slot], keys[number], kept[number], most[number] = number, key, child, own
+            number += 1
+        same = slots[slot]
+        if own > most[same]:
+            kept[same], most[same] = child, own
+        for part in range(LOG_WEIGHT):
+            total[same, part] += own * made[child, part]
+        total[same, LOG_WEIGHT] += own
+    for k in range(number):
+        for part in range(LOG_WEIGHT):
+            made[kept[k], part] = total[k, part] / total[k, LOG_WEIGHT]
+        made[kept[k], LOG_WEIGHT] = top + np.log(total[k, LOG_WEIGHT])
+    return kept[:number]
+
+
+@piece()
+def _key(state, choice):  # type: ignore[no-untyped-def]
+    """A number that hypotheses share which agree in all that decides how they go on."""
+    key = np.int64(np.floor(state[PLACE] / PLACE_BIN_MM))
+    for part in (
+        np.int64(np.floor(state[LOG_SPEED] / SPEED_BIN)), choice[WAY], choice[OFFSET], choice[YAW], choice[TOUCH],
+        choice[SEEN], choice[COLUMNS] & 0xFFFF,
+    ):  # fmt: skip
+        key = (key ^ (key >> 29)) * np.int64(0x3F58476D1CE4E5B9) + part + np.int64(0x1E3779B97F4A7C15)
+    return key ^ (key >> 31)
