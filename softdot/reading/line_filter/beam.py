@@ -72,7 +72,7 @@ class HandMotion(NamedTuple):
     """Log-probabilities of a step, and constants of the weights.
 
     faster, jump : steps of the log-speed; relax, settle : shares of the way of log-speed and mean to each other in a
-    step. log_blank, log_dots (4,) : of a blank column, and of each other pattern, by what kind_before says; log_unseen :
+    step. log_blank, log_dots (4,) : of a blank column, and of each other pattern, by kind_before. log_unseen :
     of one that passes without contact. height, height_spread : mean and variance of the height of dots, as shares of
     the nominal charge. rough : standard deviation of a charge over the charge; degrees : of Student's t. kept_log,
     most_kept : how far behind the best, and how many hypotheses are kept.
