@@ -19,6 +19,8 @@ from softdot.output import Product, staged_folder
 from softdot.progress import Logged, Progress
 from softdot.version import installed_version
 from solve.materials.prony import Prony
+from solve.mechanisms.layers.stress_softening import STRESS_SOFTENING
+from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
 
 PRODUCT = Product("softdot-material/1", "material.json", frozenset(
     {"material.json", "material.toml", "material.html", "pictures"}
@@ -82,11 +84,10 @@ def memory_mechanisms(material: FittedMaterial) -> list[dict[str, Any]]:
     found: list[dict[str, Any]] = []
     if (series := material.series) is not None:
         values = {"relative_moduli": series.relative_moduli, "relaxation_times_s": series.relaxation_times}
-        found.append({"name": "viscoelasticity", "parameters": _rounded(values)})
+        found.append({"name": VISCOELASTICITY.name, "parameters": _rounded(values)})
     if (softening := material.softening) is not None:
-        found.append(
-            {"name": "stress-softening", "parameters": _rounded({"loss_ratio": softening.loss, "beta": softening.beta})}
-        )
+        constants = {"loss_ratio": softening.loss, "beta": softening.beta}
+        found.append({"name": STRESS_SOFTENING.name, "parameters": _rounded(constants)})
     return found
 
 
