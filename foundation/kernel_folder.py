@@ -19,7 +19,7 @@ SHARED_KERNEL_SOURCES = (
     "solve/reduced/table_reading.py",
     "solve/readout/filters.py",
     "diagnose/engines/coupon/*.py",
-    "softdot/reading/line_filter/beam.py",
+    "softdot/reading/line_filter/*.py",
 )
 
 
