@@ -16,6 +16,7 @@ from softdot.version import installed_version
 if TYPE_CHECKING:
     from argparse import Namespace
 
+    from softdot.arrays.kernel import ArrayKernel
     from softdot.config.schema import Config
     from softdot.reading.conditions import ReadingConditions
 
@@ -47,6 +48,7 @@ def run_read(
 
     from export.array.reading_page import write_reading_page
     from export.array.signals import draw_signals
+    from foundation.errors import InputError
     from softdot.reading.calibration_file import load_calibration, widened
     from softdot.reading.cells import cells_of
     from softdot.reading.conditions import ReadingConditions
@@ -57,6 +59,8 @@ def run_read(
     from softdot.reading.signals import page_signals, signal_arrays
     from softdot.system_libraries import name_missing_library
 
+    if calibration is not None and recording is None:
+        raise InputError(f"calibration = '{calibration}': acts only on a recording")
     progress = progress or Logged()
     with name_missing_library():
         names = named_decoders(decoders)
@@ -73,14 +77,8 @@ def run_read(
             arrays = signal_arrays(reading)
             summary: dict[str, Any] = plain(
                 {
-                    "format": READING.format,
-                    "softdot_version": installed_version(),
-                    "config_hash": kernel.about["config_hash"],
+                    **_origin(kernel, table, recording, calibration),
                     **reading_content(reading, text if cells is not None else None, table),
-                    "table": table,
-                    "recording": None if recording is None else str(recording),
-                    "calibration": None if calibration is None else str(calibration),
-                    "config": kernel.about["config"],
                 }
             )
             warn(summary["warnings"])
@@ -91,6 +89,19 @@ def run_read(
                 write_reading_page(folder / "report.html", summary, page_signals(reading))
             write_json(folder / READING.summary, summary)
     return summary
+
+
+def _origin(kernel: ArrayKernel, table: str | None, recording: Path | None, calibration: Path | None) -> dict[str, Any]:
+    """What reading.json says of the program, the design, and the files that were read."""
+    return {
+        "format": READING.format,
+        "softdot_version": installed_version(),
+        "config_hash": kernel.about["config_hash"],
+        "table": table,
+        "recording": None if recording is None else str(recording),
+        "calibration": None if calibration is None else str(calibration),
+        "config": kernel.about["config"],
+    }
 
 
 def command(chosen: Namespace) -> int:
@@ -108,6 +119,7 @@ def command(chosen: Namespace) -> int:
         if chosen.text is not None:
             raise InputError(f"--text = '{chosen.text_of_option}': the text stands before the options already")
         chosen.text = chosen.text_of_option
+    read_calibration.refuse_idle_options(chosen)
     if chosen.learn is not None or is_learned_kernel(chosen.kernel):
         return read_touches.command(chosen)
     for name in ("keep_rest", "among"):
@@ -120,14 +132,13 @@ def command(chosen: Namespace) -> int:
     config = load_config(chosen.config, chosen.set) if chosen.config is not None or chosen.set else None
     if chosen.study or chosen.conditions is not None:
         return _study_conditions(chosen, config)
+    is_heard = chosen.recording is not None or chosen.calibrate is not None
+    refuse_idle(conditions_of(chosen), _stated_conditions(chosen), is_heard)
     if chosen.calibrate is not None:
         return read_calibration.command(chosen, config)
     recording = None if chosen.recording is None else Path(chosen.recording)
-    if recording is None and chosen.calibration is not None:
-        raise InputError(f"--calibration = '{chosen.calibration}': acts only with --recording")
     if recording is not None and chosen.preset is not None:
         raise InputError(f"--preset = '{chosen.preset}': acts only on voltages that are simulated; leave it out")
-    refuse_idle(conditions_of(chosen), _stated_conditions(chosen), recording is not None)
     with only_the_summary_on_stdout(), progress_of(chosen) as progress:
         summary = run_read(
             chosen.text, Path(chosen.kernel), Path(chosen.output), conditions_of(chosen), config, chosen.table,

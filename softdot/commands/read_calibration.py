@@ -5,9 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from foundation.errors import InputError
 from softdot.console import GOOD, only_the_summary_on_stdout, show
 from softdot.json_files import plain, write_json
 from softdot.output import Product, staged_folder
+from softdot.reading.learned_kernel.kernel_file import is_learned_kernel
 from softdot.version import installed_version
 
 if TYPE_CHECKING:
@@ -56,6 +58,19 @@ def run_calibrate(
         )
         write_json(folder / CALIBRATION.summary, summary)
     return summary
+
+
+def refuse_idle_options(chosen: Namespace) -> None:
+    """InputError for a calibration beside what it does not act on."""
+    if chosen.calibration is not None:
+        if chosen.recording is None:
+            raise InputError(f"--calibration = '{chosen.calibration}': acts only with --recording")
+        if chosen.learn is not None or is_learned_kernel(chosen.kernel):
+            raise InputError(f"--calibration = '{chosen.calibration}': acts only on the kernel of a design")
+    if chosen.calibrate is not None:
+        for name in ("recording", "study", "conditions", "design", "learn", "preset", "decoders"):
+            if getattr(chosen, name):
+                raise InputError(f"--{name}: has no part in --calibrate; leave it out")
 
 
 def command(chosen: Namespace, config: Config | None) -> int:
