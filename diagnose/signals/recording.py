@@ -14,6 +14,7 @@ from scipy.ndimage import median_filter
 
 from diagnose.signals.acceleration import acceleration_mm_per_s2, velocity_mm_per_s
 from diagnose.signals.phases import Segmentation, find_phases
+from diagnose.signals.smoothed_drive import SmoothedDrive, smoothed_drive
 from foundation.arrays import Bools, Floats
 from foundation.nearest_name import nearest_name_hint
 from geometry.parameters import Finite, Positive, Table
@@ -232,6 +233,11 @@ class Run:
     def drive_values(self) -> Floats:
         """Samples (t,) of the channel that drives the simulation."""
         return self.channels[self.drive]
+
+    @cached_property
+    def smoothed_drive(self) -> SmoothedDrive:
+        """The motion behind the samples of the drive, with which a model is pressed."""
+        return smoothed_drive(self.drive_values, self.pieces)
 
     @property
     def answers(self) -> tuple[str, ...]:

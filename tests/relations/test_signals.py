@@ -13,6 +13,7 @@ from diagnose.signals.align import lag_between
 from diagnose.signals.phases import find_phases, rest_level
 from diagnose.signals.recording import even_pieces, is_evenly_sampled, samples_after_gaps, sampling_rates_Hz
 from diagnose.signals.saturation import saturation_mask
+from diagnose.signals.smoothed_drive import smoothed_drive
 from tests.diagnose.rigs import trapezoid
 
 SEVERAL = settings(max_examples=15, deadline=None)
@@ -44,6 +45,18 @@ def test_phases_of_a_travel_do_not_depend_on_its_zero(drive, shift):
     """On a grid on which a shift rounds nothing."""
     travel = np.round(drive * 2**20) / 2**20
     assert find_phases(TIME_S, travel, False).presses == find_phases(TIME_S, travel + shift, False).presses
+
+
+@SEVERAL
+@given(st.floats(0.05, 0.5), st.floats(0.1, 1.0), st.floats(-4.0, -2.0), st.integers(0, 99), FACTORS, st.booleans())
+def test_a_smoothed_drive_is_nearer_to_the_motion_in_any_unit(rise, hold, exponent, seed, length, sine):
+    motion = 0.3 * np.sin(np.pi * TIME_S / (4.0 * rise)) if sine else trapezoid(TIME_S, 0.3, 0.5, rise, hold)
+    assert smoothed_drive(motion, [slice(0, 2000)]).values == pytest.approx(motion, abs=1e-6)
+    noise = 10.0**exponent * np.random.default_rng(seed).normal(size=2000)
+    found, scaled = (smoothed_drive(by * (motion + noise), [slice(0, 2000)]).values for by in (1.0, length))
+    assert scaled == pytest.approx(length * found, rel=1e-12, abs=1e-12 * length)
+    assert np.std(found - motion) < 0.8 * 10.0**exponent
+    assert np.abs(found - motion).max() < 6.0 * 10.0**exponent
 
 
 @SEVERAL

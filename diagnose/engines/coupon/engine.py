@@ -103,7 +103,7 @@ class CouponEngine(SolvedOutright):
         kind = run.drive
         shift = sum(of_drive.get(name, 0.0) for name, of in DRIVE_ERRORS.items() if of == kind and name != "force_gain")
         gain = of_drive.get("force_gain", 0.0) if kind == "force_N" else 0.0
-        drive = (run.drive_values - shift) / (1.0 + gain)
+        drive = (run.smoothed_drive.values - shift) / (1.0 + gain)
         model = self.model(mechanisms)
         course = run.label, len(drive)
         near = None if self.last is None else self.last.get(course)

@@ -183,7 +183,7 @@ def _scaled_loading(run: Run, phases: Segmentation, largest_N: float) -> Loading
     level = rest_level(run.drive_values)[0]
     before = max(run.largest_before.get(run.drive, level) - level, 0.0)
     touch_s = float(run.time_s[phases.presses[0].touch])
-    return Loading(run.time_s, (run.drive_values - level) / largest_N, touch_s, before / largest_N)
+    return Loading(run.time_s, (run.smoothed_drive.values - level) / largest_N, touch_s, before / largest_N)
 
 
 def _scene(recording: Recording) -> Scene:

@@ -32,7 +32,7 @@ def model_drive(run: Run, phases: Segmentation) -> Drive:
     """Drive of a run as the model takes it; a force is at least 0, since it cannot pull."""
     first = phases.presses[0].touch if phases.presses else 0
     by_depth = run.drive == "displacement_mm"
-    values = run.drive_values if by_depth else np.maximum(run.drive_values, 0.0)
+    values = run.smoothed_drive.values if by_depth else np.maximum(run.smoothed_drive.values, 0.0)
     touching = np.zeros(len(values), dtype=np.bool_)
     for press in phases.presses:
         touching[press.touch : press.clear] = True
