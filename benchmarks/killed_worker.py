@@ -47,9 +47,7 @@ RUNS = {"slow, 0.15 mm": (0.15, 0.5, 1.0), "slow, 0.2 mm": (0.2, 0.5, 1.0), "qui
 COARSE_PAPER = """
 import sys
 from softdot import cli
-from softdot.commands import paper
 from softdot.sweeps import points
-paper.PARTS = ("analytical", "segments")
 solve = points.solve_points
 def coarse(configs, *others, **named):
     larger = [one.model_copy(update={"mesh": one.mesh.scale_sizes(4.0)}) for one in configs]
@@ -57,7 +55,7 @@ def coarse(configs, *others, **named):
 points.solve_points = coarse
 sys.exit(cli.main(sys.argv[1:]))
 """
-"""The cross-sections and segments of the paper alone, on elements four times as large."""
+"""The whole study, on elements four times as large."""
 SOFTDOT = [sys.executable, "-m", "softdot.cli"]
 
 
@@ -159,7 +157,7 @@ def largest_difference(one: Any, other: Any, place: str = "", size: float = 0.0)
         return max((largest_difference(*two, f"{place}[{n}]", size) for n, two in each), default=(0.0, place))
     if isinstance(one, float) and isinstance(other, float):
         return abs(one - other) / max(abs(one), abs(other), size, 1e-300), place
-    return (0.0 if one == other else math.inf), place
+    return (0.0, place) if one == other else (math.inf, f"{place}: {one!r} or {other!r}")
 
 
 def left() -> list[str]:

@@ -110,8 +110,7 @@ def evidence_of(found: Compared, detected: Checked, group: Sequence[int], held_o
     if best is None or best.fit is None:
         return Evidence(detected.p_value)
     fits = [one.fit for n in group if (one := found.explained[n]).fit is not None]
-    free = any(one.traits.free_phase for one in best.candidates)  # the phase in a press follows from no other
-    confirmed = None if held_out is None or free else _confirmed(held_out, len(judge.model.samples.presses))
+    confirmed = None if held_out is None else _confirmed(held_out, len(judge.model.samples.presses))
     return Evidence(
         p_mismatch=detected.p_value,
         best=named(best.fit),

@@ -30,7 +30,7 @@ def trained_and_held(found: Screening, one: Hypothesis, gains: Floats) -> tuple[
 
     gains : (presses,) held-out log-score gains. Mechanisms and shared nuisances come from training presses alone, in
     the metric of the hypothesis. What floats in a run that has no training press is fitted to it with both models
-    alike, under its prior.
+    alike, under its prior. A phase that nobody knows is predicted in runs with a training press alone.
     """
     model, fit = one.metric, one.fit
     samples = model.samples
@@ -44,6 +44,8 @@ def trained_and_held(found: Screening, one: Hypothesis, gains: Floats) -> tuple[
             own = fit_mechanisms(model, fit.system.restricted_to(seen), fit.candidates, fit.values, one.form_excess)
             settings, after = own.settings, own.closest_nuisances(model)
     runs = {samples.presses[n][0] for n in training}
+    if fit is not None and any(one.traits.free_phase for one in fit.candidates):
+        held = [n for n in held if samples.presses[n][0] in runs]
     frozen = np.array([nuisance.run is None or nuisance.run in runs for nuisance in model.nuisances], dtype=bool)
     unseen = informative & np.isin(samples.press, held)
     if held and not frozen.all():

@@ -83,7 +83,8 @@ def _named_sentences(findings: Findings, best: FittedModel) -> Iterator[Sentence
         )
     fit = findings.held_out
     if fit is not None:
-        yield Sentence("With it", f"on presses that took no part in the fit, the error falls {_error_words(fit)}.")
+        change = "falls" if fit.improves else "does not fall but goes"
+        yield Sentence("With it", f"on presses that took no part in the fit, the error {change} {_error_words(fit)}.")
     rivals = [findings.models[n] for group in findings.groups[:1] for n in group if findings.models[n] is not best]
     if rivals:
         words = join_words([model_words(rival) for rival in rivals], "or")
