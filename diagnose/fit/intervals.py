@@ -28,6 +28,7 @@ from foundation.arrays import Bools, Floats
 
 INTERVAL_LEVEL = 0.9
 MAX_STEPS_TO_END = 8
+UNUSED_SHARE = 0.1  # of the allowed fall of the likelihood: more of it is left where a bound ended a search
 NEGLIGIBLE_STEP_SHARE = 0.01  # of the half width: another step is not worth it
 GRADIENT_STEP_SHARE = 1e-4  # of the width of a coordinate's range, for slopes of g
 
@@ -164,11 +165,15 @@ def _interval(model: ObservedModel, fit: Fitted, function: Function, unit: str) 
 
 
 def _interval_end(model: ObservedModel, fit: Fitted, function: Function, side: float) -> tuple[float, bool]:
-    """End of g on one side, and whether a coordinate stands at its bound there."""
+    """End of g on one side, and whether the bounds of the search set it and not the data.
+
+    They do where the likelihood would allow more, and a bound holds a coordinate that would take g farther.
+    """
     limits, best = bounds(fit.candidates), function(fit.values)
     problem = descent(model, fit.system, fit.candidates, fit.settings)
     here, reached = problem.at(fit.values), best
-    allowed = here.cost + 0.5 * float(chi2.ppf(INTERVAL_LEVEL, 1))
+    room = 0.5 * float(chi2.ppf(INTERVAL_LEVEL, 1))
+    allowed = here.cost + room
     for _ in range(MAX_STEPS_TO_END):
         slope = side * _gradient(function, here.values, limits)
         if not slope.any():
@@ -186,7 +191,9 @@ def _interval_end(model: ObservedModel, fit: Fitted, function: Function, side: f
         here = after
         if abs(reached - before) <= NEGLIGIBLE_STEP_SHARE * abs(reached - best):
             break
-    return reached, bool(np.any((here.values <= limits[:, 0]) | (here.values >= limits[:, 1])))
+    slope = side * _gradient(function, here.values, limits)
+    held = (here.values <= limits[:, 0]) & (slope < 0.0) | (here.values >= limits[:, 1]) & (slope > 0.0)
+    return reached, bool(held.any() and allowed - here.cost > UNUSED_SHARE * room)
 
 
 def _step_to_end(

@@ -133,6 +133,7 @@ def test_an_interval_that_a_bound_ends_says_so():
     assert found["relative_moduli[1]"].low == 0.0
     assert found["relative_moduli[1]"].limited_by_search
     assert found["relative_moduli[0]"].low > 0.05
+    assert not found["relative_moduli[0]"].limited_by_search  # though others stand at their bounds
 
 
 def test_an_interval_may_end_where_a_law_is_a_simpler_one():
