@@ -1,13 +1,15 @@
 """Lines read under the conditions of a hand: characters, and how far stated probabilities are to be believed.
 
-    python -m benchmarks.reading_by_hand KERNEL [TRUE ...] [--characters 200] [--seed 1000] [--rows NAME,NAME]
+    python -m benchmarks.reading_by_hand KERNEL [TRUE ...] [--characters 200] [--seed 1000] [--rows NAME,NAME] [--words]
 
 KERNEL is the folder of softdot array --kernel that the reader knows; TRUE are folders of other sensors that make the
 voltages, one line after the other; without one KERNEL makes them. "made" stands for the kernel of the tests, and
 "made-other" for one whose charges are 0.8 of it, 5 % wider, with more crosstalk and interaction. Every row has seeds
 of its own from --seed on. Characters are right where the most likely cells say so; "certain" is the share of cells
 stated at 0.9 or above, and "right of these" the share of them that is right. A second table compares stated
-probabilities of all rows with shares that are right.
+probabilities of all rows with shares that are right. With --words a last line says what English words make of the
+cells below 0.9: how many they complete, how many of these rightly, and how many words have a completed cell that is
+wrong, that is, are invented.
 """
 
 import argparse
@@ -19,12 +21,16 @@ from typing import Any
 import numpy as np
 
 from diagnose.statistics.proportions import wilson_interval
+from foundation.arrays import Ints
 from softdot.arrays.kernel import ArrayKernel, load_kernel
+from softdot.braille_text.words import words_of
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.conditions import ReadingConditions, standard_of
-from softdot.reading.decoders.hand import track_hand
+from softdot.reading.decoders.hand import HandTrack, track_hand
 from softdot.reading.decoders.onset import NoDotError
+from softdot.reading.language import complete
 from softdot.reading.line import manufactured_line
+from softdot.reading.line_filter.line_reader import CERTAIN
 from softdot.reading.motion import array_path
 from softdot.reading.score import align, rate
 from softdot.reading.voltages import Reader, Voltages, record_voltages
@@ -119,7 +125,34 @@ def heard_line(true: ArrayKernel, known: ArrayKernel, cells: np.ndarray, given: 
     return Reader(known, chosen, readout), heard
 
 
-def read_one(reader: Reader, heard: Voltages, cells: np.ndarray, stated: list[tuple[float, bool]]) -> dict[str, float]:
+class Completed:
+    """Cells that English words complete, counted over all lines."""
+
+    def __init__(self) -> None:
+        self.uncertain, self.completed, self.right, self.words, self.invented = 0, 0, 0, 0, 0
+
+    def add(self, track: HandTrack, true: Ints) -> None:
+        """Count those of a line; true (c,) : its cell at each place of the track, -1 where it has none."""
+        certain = track.probability >= CERTAIN
+        told = complete(track.cells, track.shares, certain, words_of("en"), CERTAIN)
+        wrong = told.completed & (told.cells != true)
+        word = np.cumsum(true == 0)
+        self.uncertain += int((~certain).sum())
+        self.completed += int(told.completed.sum())
+        self.right += int((told.completed & ~wrong).sum())
+        self.words += int(word[-1]) + 1
+        self.invented += len(np.unique(word[wrong]))
+
+    def __str__(self) -> str:
+        return (
+            f"words complete {self.completed} of {self.uncertain} uncertain cells, {self.right} rightly; "
+            f"{self.invented} of {self.words} words are invented"
+        )
+
+
+def read_one(
+    reader: Reader, heard: Voltages, cells: np.ndarray, stated: list[tuple[float, bool]], words: Completed | None
+) -> dict[str, float]:
     """Characters and certain cells of one line; stated takes the probability of each cell, and whether it is right."""
     begun = time.process_time()
     text = text_of(cells)
@@ -137,12 +170,14 @@ def read_one(reader: Reader, heard: Voltages, cells: np.ndarray, stated: list[tu
     found |= {"certain": int(certain.sum()), "certain_right": int((certain & right).sum()), "cells": len(right)}
     found["lost"] = track.report.lost
     stated += zip(track.probability, right, strict=True)
+    if words is not None:
+        words.add(track, np.array([-1 if partner[j] is None else cells[partner[j]] for j in range(len(right))]))
     return found
 
 
 def row(
     conditions: dict[str, Any], known: ArrayKernel, true: list[ArrayKernel], characters: int, seed: int,
-    stated: list[tuple[float, bool]],
+    stated: list[tuple[float, bool]], words: Completed | None,
 ) -> str:  # fmt: skip
     """The figures of one row."""
     found: list[dict[str, float]] = []
@@ -151,7 +186,7 @@ def row(
         random = np.random.default_rng(own)
         cells = cells_of(line_of_words(random))
         reader, heard = heard_line(true[len(found) % len(true)], known, cells, drawn(conditions, random), own)
-        found.append(read_one(reader, heard, cells, stated))
+        found.append(read_one(reader, heard, cells, stated, words))
     total = {name: sum(one[name] for one in found) for name in found[0]}
     low = 100.0 * wilson_interval(int(total["right"]), int(total["of"]))[0]
     sure = 100.0 * total["certain_right"] / max(total["certain"], 1)
@@ -186,17 +221,21 @@ def main() -> None:
     ask.add_argument("--characters", type=int, default=200)
     ask.add_argument("--seed", type=int, default=1000)
     ask.add_argument("--rows")
+    ask.add_argument("--words", action="store_true")
     chosen = ask.parse_args()
     known = kernel_named(chosen.kernel)
     true = [kernel_named(name) for name in chosen.true] or [known]
     print("| condition | right | % | at least % | certain % | right of these % | lost | s per s |")
     print("|---|---|---|---|---|---|---|---|")
     stated: list[tuple[float, bool]] = []
+    words = Completed() if chosen.words else None
     for number, (name, conditions) in enumerate(ROWS.items()):
         if chosen.rows is None or any(part in name for part in chosen.rows.split(",")):
             seed = chosen.seed + 100 * number
-            print(f"| {name} | {row(conditions, known, true, chosen.characters, seed, stated)} |", flush=True)
+            print(f"| {name} | {row(conditions, known, true, chosen.characters, seed, stated, words)} |", flush=True)
     print(reliability(stated), flush=True)
+    if words is not None:
+        print(words, flush=True)
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ DISPLAY_TABLE = "unicode.dis"
 """The table of liblouis by which cells are characters of Unicode."""
 UNKNOWN_CHARACTER = re.compile("⠄⡳⠭[⠀-⣿]*?⠄")
 """The cells that liblouis writes for a character that its table lacks: the Braille of '\\xhhhh'."""
+SIX_DOTS = re.compile("[⠀-⠿]+")
 TIMEOUT_S = 60
 
 
@@ -59,6 +60,21 @@ def louis_cells(text: str, table: str) -> str:
         shown = ", ".join(f"'{c}' (U+{ord(c):04X}) at place {text.index(c) + 1}" for c in lacking)
         raise InputError(f"text: {shown} is not in the liblouis table '{table}'; choose another table by --table")
     return cells
+
+
+def louis_words(words: list[str], table: str) -> list[str | None]:
+    """Cells of many words by a table of liblouis, None where it lacks a character or makes cells of eight dots.
+
+    InputError without liblouis, and for a table that it does not know.
+    """
+    translator = liblouis()
+    if translator is None:
+        raise InputError(f"--table '{table}': liblouis is not installed; {INSTALL_ADVICE}")
+    if translator.called_by == "louis":
+        cells = [_by_binding(word, table) for word in words]
+    else:
+        cells = _translate(translator, "\n".join(words), table).split("\n")
+    return [one if one and SIX_DOTS.fullmatch(one) and not UNKNOWN_CHARACTER.search(one) else None for one in cells]
 
 
 def _translate(translator: Translator, text: str, table: str) -> str:

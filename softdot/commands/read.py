@@ -37,11 +37,13 @@ def run_read(
     recording: Path | None = None,
     calibration: Path | None = None,
     progress: Progress | None = None,
+    language: str | None = None,
 ) -> dict[str, Any]:
     """Read a text with the kernel of a folder into the folder out and return the content of reading.json.
 
     text : None or empty only with a recording of an unknown text. calibration : of the sensor of a recording. table :
-    of liblouis, None for plain English.
+    of liblouis, None for plain English. language : whose words complete what the decoder hand is not certain of, apart
+    from the text that is read.
     InputError, before anything is written, for whatever cannot be read.
     """
     import numpy as np
@@ -49,11 +51,13 @@ def run_read(
     from export.array.reading_page import write_reading_page
     from export.array.signals import draw_signals
     from foundation.errors import InputError
+    from softdot.braille_text.words import words_of
     from softdot.reading.calibration_file import load_calibration, widened
     from softdot.reading.cells import cells_of
     from softdot.reading.conditions import ReadingConditions
-    from softdot.reading.decoders import named_decoders
+    from softdot.reading.decoders import HAND, named_decoders
     from softdot.reading.kernels import open_kernel, readout_of
+    from softdot.reading.language import language_content
     from softdot.reading.line_reading import read_line, reading_content
     from softdot.reading.recorded_file import read_voltages
     from softdot.reading.signals import page_signals, signal_arrays
@@ -64,6 +68,9 @@ def run_read(
     progress = progress or Logged()
     with name_missing_library():
         names = named_decoders(decoders)
+        if language is not None and names[0] != HAND:
+            raise InputError(f"--language = '{language}': acts on what the decoder {HAND} reads; --decoders {HAND}")
+        words = None if language is None else words_of(language, table)
         cells = None if recording is not None and not (text or "").strip() else cells_of(text or "", table)
         kernel = open_kernel(kernel_folder, config)
         heard = None if recording is None else read_voltages(recording, len(kernel.centres_mm))
@@ -79,6 +86,7 @@ def run_read(
                 {
                     **_origin(kernel, table, recording, calibration),
                     **reading_content(reading, text if cells is not None else None, table),
+                    **({} if words is None else {"language": language_content(reading.first, words, table)}),
                 }
             )
             warn(summary["warnings"])
@@ -120,7 +128,11 @@ def command(chosen: Namespace) -> int:
             raise InputError(f"--text = '{chosen.text_of_option}': the text stands before the options already")
         chosen.text = chosen.text_of_option
     read_calibration.refuse_idle_options(chosen)
-    if chosen.learn is not None or is_learned_kernel(chosen.kernel):
+    of_touches = chosen.learn is not None or is_learned_kernel(chosen.kernel)
+    no_line = of_touches or chosen.design or chosen.study or chosen.conditions or chosen.calibrate
+    if chosen.language is not None and no_line:
+        raise InputError(f"--language = '{chosen.language}': acts only on a line that is read; leave it out")
+    if of_touches:
         return read_touches.command(chosen)
     for name in ("keep_rest", "among"):
         if getattr(chosen, name):
@@ -143,6 +155,7 @@ def command(chosen: Namespace) -> int:
         summary = run_read(
             chosen.text, Path(chosen.kernel), Path(chosen.output), conditions_of(chosen), config, chosen.table,
             _decoders(chosen), recording, None if chosen.calibration is None else Path(chosen.calibration), progress,
+            chosen.language,
         )  # fmt: skip
     show(summary, chosen, short_text)
     return GOOD if summary["is_certain"] else NOT_CONVERGED
@@ -259,6 +272,9 @@ def _preset(chosen: Namespace) -> dict[str, Any]:
 def short_text(summary: dict[str, Any], output: str) -> str:
     """The reading in a few lines: text, rates, speed, and the path of the page."""
     lines = [summary["text_read"]]
+    if "language" in summary:
+        told = summary["language"]
+        lines.append(f"with {len(told['completed'])} cells more by words of the language: {told['text']}")
     for name, own in summary["decoders"].items():
         if "character_accuracy" in own:
             share = own["character_accuracy"]

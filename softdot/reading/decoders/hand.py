@@ -25,7 +25,8 @@ class HandTrack:
     """The track of a slide over a line, and the cells that were read on the way.
 
     cells, probability, passed_s (c,) : the most likely cells from left to right, -1 where
-    one passed without contact, their probabilities, and when the array's middle passed each. course_s, course_mm (t,) :
+    one passed without contact, their probabilities, and when the array's middle passed each. shares (c, 64) :
+    probability of each kind of cell. course_s, course_mm (t,) :
     place of the array's middle from the first cell that was met, in the direction of its motion.
     """
 
@@ -35,6 +36,7 @@ class HandTrack:
     cells: Ints
     probability: Floats
     passed_s: Floats
+    shares: Floats
     course_s: Floats
     course_mm: Floats
 
@@ -96,11 +98,11 @@ def track_hand(reader: Reader, heard: Voltages) -> HandTrack:
     return HandTrack(
         report, heard, pitch, np.array([one.cell for one in order], dtype=np.int64),
         np.array([one.probability for one in order]), np.array([one.time_s for one in order]),
-        course[:, 0], course[:, 1] - pitch * first,
+        np.array([one.shares for one in order]), course[:, 0], course[:, 1] - pitch * first,
     )  # fmt: skip
 
 
 def decode(track: HandTrack) -> DecodedCells:
     """The cells that are certain, -1 for the others; none is where what was heard is no text."""
     certain = np.where((track.probability >= CERTAIN) & track.is_text, track.cells, -1)
-    return DecodedCells(certain, track.passed_s, track.cells, track.probability)
+    return DecodedCells(certain, track.passed_s, track.cells, track.probability, track.shares)

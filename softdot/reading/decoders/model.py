@@ -36,14 +36,15 @@ class DecodedCells:
     """Decoded cells (c,), -1 where none is certain, and the times passed_s (c,) at which the array's middle has passed
     each; blanks at both ends are left out.
 
-    likely, probability (c,) : the most likely cells, of uncertain ones too, and their probabilities; None of a decoder
-    that knows none.
+    likely, probability (c,), shares (c, 64) : the most likely cells, of uncertain ones too, their probabilities, and
+    that of each kind of cell; None of a decoder that knows none.
     """
 
     cells: Ints
     passed_s: Floats
     likely: Ints | None = None
     probability: Floats | None = None
+    shares: Floats | None = None
 
 
 def decode(reader: Reader, seen: Track | PressedCells) -> DecodedCells:

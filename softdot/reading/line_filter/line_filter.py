@@ -60,7 +60,7 @@ NEAR_MM = 3.0
 class PassedCell:
     """A cell as the hypotheses have it: number, the most likely one (-1 where none was seen), its probability, time
     at which the array's middle passed it, the worst fit meanwhile, and whether the array was half a row aside, where
-    every dot lies between two rows of segments and each side looks like the other.
+    every dot lies between two rows of segments and each side looks like the other. shares (64,) : probability of each.
     """
 
     number: int
@@ -69,6 +69,7 @@ class PassedCell:
     time_s: float
     worst_fit: float
     is_between_rows: bool
+    shares: Floats
 
 
 @dataclass
@@ -274,8 +275,9 @@ class LineFilter:
         between = self._asides.pop(number, 0.0) > BETWEEN_ROWS * self.table.dot_pitch_mm
         time = self._times.popleft() if self._times else self._now_s
         if share[64] >= 0.5:
-            return PassedCell(number, -1, 0.0, time, fit, between)
-        return PassedCell(number, cell, float(share[cell]), time, fit, between)
+            return PassedCell(number, -1, 0.0, time, fit, between, np.full(64, 1.0 / 64.0))
+        shares = share[:64] + share[64] / 64.0
+        return PassedCell(number, cell, float(share[cell]), time, fit, between, shares)
 
 
 def _column(columns: np.ndarray, seen: np.ndarray, number: int) -> np.ndarray:

@@ -1,6 +1,6 @@
 """A reader that is given voltages bit by bit, and gives out cells with their time and probability."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -8,6 +8,7 @@ from foundation.arrays import Floats
 from foundation.errors import InputError
 from geometry.braille_standards import BrailleStandard
 from softdot.arrays.kernel import ArrayKernel
+from softdot.reading.cells import KINDS_OF_CELL
 from softdot.reading.line_filter.beam import Sensor
 from softdot.reading.line_filter.channels import Channels, first_signal, measured_channels
 from softdot.reading.line_filter.charge import ChargeBlocks
@@ -37,6 +38,8 @@ LOST_PROBABILITY, ASIDE_PROBABILITY = 0.5, 0.85
 """Of a cell at most where the fit was bad, and where the array was between two rows of dots."""
 CERTAIN = 0.9
 """Least probability of a cell that is given out as read."""
+MIRRORED = np.arange(KINDS_OF_CELL) >> 3 | (np.arange(KINDS_OF_CELL) & 7) << 3
+"""The cells (64,) with left and right column exchanged."""
 
 
 @dataclass(frozen=True)
@@ -45,13 +48,15 @@ class ReadCell:
 
     number : of the cell in the order of reading, from 0; they are given out in this order, from right to left where
     the array moved so. cell : from 0 to 63, the most likely one; -1 where it passed without contact. probability : that
-    this is right; below CERTAIN it is not to be trusted. time_s : when the array's middle passed it.
+    this is right; below CERTAIN it is not to be trusted. time_s : when the array's middle passed it. shares (64,) :
+    probability of each cell.
     """
 
     number: int
     cell: int
     probability: float
     time_s: float
+    shares: Floats = field(compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -271,10 +276,14 @@ class LineReader:
 
     def _read_cell(self, passed: PassedCell) -> ReadCell:
         """The cell as it is given out, in the order of reading."""
-        cell = passed.cell
-        if cell > 0 and self._filters[0].table.is_mirrored:
-            cell = cell >> 3 | (cell & 7) << 3
-        return ReadCell(passed.number, cell, stated_probability(passed), passed.time_s)
+        cell, shares, stated = passed.cell, passed.shares, stated_probability(passed)
+        if passed.probability > 1.0 / KINDS_OF_CELL:  # what the stated one is less is any other cell
+            left = (stated - 1.0 / KINDS_OF_CELL) / (passed.probability - 1.0 / KINDS_OF_CELL)
+            shares = max(left, 0.0) * shares + (1.0 - max(left, 0.0)) / KINDS_OF_CELL
+        if self._filters[0].table.is_mirrored:
+            cell = MIRRORED[cell] if cell > 0 else cell
+            shares = shares[MIRRORED]
+        return ReadCell(passed.number, int(cell), stated, passed.time_s, shares)
 
 
 def stated_probability(passed: PassedCell) -> float:
