@@ -35,9 +35,11 @@ def words_of(language: str, table: str | None = None) -> Words:
 
     InputError for a language that is not known, without a table for German, and without pyspellchecker.
     """
-    counts = _counts(language)
+    if language not in LANGUAGES:
+        raise InputError(f"--language = '{language}': is not known, allowed are {', '.join(LANGUAGES)}")
     if table is None and language != "en":
         raise InputError(f"--language = '{language}': needs a table of liblouis, such as --table de-g1.ctb")
+    counts = _counts(language)
     chosen = sorted(counts, key=lambda word: -counts[word])[:MOST_WORDS]
     cells = [english_cells(word, "") for word in chosen] if table is None else louis_words(chosen, table)
     together: dict[str, float] = {}
@@ -58,9 +60,7 @@ def words_of(language: str, table: str | None = None) -> Words:
 
 
 def _counts(language: str) -> dict[str, int]:
-    """How often each word of letters alone is used. InputError."""
-    if language not in LANGUAGES:
-        raise InputError(f"--language = '{language}': is not known, allowed are {', '.join(LANGUAGES)}")
+    """How often each word of letters alone is used. InputError without pyspellchecker."""
     try:
         from spellchecker import SpellChecker
     except ImportError:
