@@ -66,7 +66,9 @@ def findings_of(found: Compared, detected: Checked, report: Report) -> Findings:
     evidence = evidence_of(found, detected, group, held_out)
     verdict = judged(evidence)
     named_all, told = isinstance(verdict, Identified), isinstance(verdict, Identified | MainPart)
-    explained = explanations(screening, [one.fit for one in found.explained if one.fit is not None])
+    fits = [one.fit for one in found.explained if one.fit is not None]
+    left = {one.component for n in group for one in found.explained[n].candidates} if told else None
+    explained = explanations(screening, fits, left)
     order = [*group, *(n for n in range(len(found.explained)) if n not in group)]
     models = tuple(
         _fitted_model(found, found.explained[n], float(found.probabilities[n]), told and n in group) for n in order

@@ -1,6 +1,6 @@
 """Where the baseline fails, and which component's sensitivities explain it."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -26,10 +26,13 @@ COMPONENTS = 6  # whose shares are worked out
 ENOUGH = 0.5  # of a cell's excess that a component has to explain to be named there
 
 
-def explanations(found: Screening, fits: Sequence[Fitted]) -> dict[str, tuple[Floats, Bools]]:
+def explanations(
+    found: Screening, fits: Sequence[Fitted], only: Collection[str] | None = None
+) -> dict[str, tuple[Floats, Bools]]:
     """Component -> columns (n, q) that it can make, those that explain most first, and which cannot be negative.
 
-    The fitted effect where there is one, else the sensitivity of the candidate that shows most.
+    The fitted effect where there is one, else the sensitivity of the candidate that shows most. only : the components
+    of what was named, beside which others are excluded however alike they look; all if None.
     """
     by_component: dict[str, tuple[Floats, Bools]] = {}
     for fit in fits:
@@ -39,7 +42,8 @@ def explanations(found: Screening, fits: Sequence[Fitted]) -> dict[str, tuple[Fl
     for number in found.survivors:
         one = found.each[number]
         by_component.setdefault(one.candidate.component, (one.columns, one.non_negative))
-    return dict(list(by_component.items())[:COMPONENTS])
+    wanted = [(name, each) for name, each in by_component.items() if only is None or name in only]
+    return dict(wanted[:COMPONENTS])
 
 
 def shares(found: Screening, explained: dict[str, tuple[Floats, Bools]]) -> dict[str, float]:

@@ -68,6 +68,8 @@ def test_leakage_is_found_located_and_shown():
     assert findings.best.gain_lower > 0.0
     assert findings.models[0].probability > 0.9
     assert {place.channel for place in findings.places} == {"voltage_V"}
+    left = {one.candidate.component for n in findings.groups[0] for one in findings.models[n].settings}
+    assert set(findings.shares) <= left
     assert max(findings.shares, key=findings.shares.get) == "readout"
     assert findings.places[0].component == "readout"
     assert "charge-leakage (readout)" in findings.reasons[0]
