@@ -98,7 +98,7 @@ def _marginals(known: Floats, words: Words) -> Floats:
         before = 1.0 if j == 0 else ends[j - 1] * known[j - 1, 0]
         after = 1.0 if k == count else known[k, 0] * begins[k + 1]
         found[j:k] += before * after * own
-    return found / found.sum(axis=1, keepdims=True)
+    return np.asarray(found / found.sum(axis=1, keepdims=True))
 
 
 def _span(known: Floats, words: Words) -> tuple[float, Floats]:
