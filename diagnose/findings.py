@@ -93,7 +93,8 @@ class FittedModel:
 class Fit:
     """Errors of a fit as root mean square over that of the recording, without samples that are missing or saturated.
 
-    presses : names of the presses that are meant. noise_floor_nrmse : the error that noise alone makes.
+    presses : names of the presses that are meant. noise_floor_nrmse : the error that noise alone makes. by_channel :
+    the squares of the three errors, before, after and of noise, of each channel; empty where there is one.
     """
 
     presses: tuple[str, ...]
@@ -101,6 +102,7 @@ class Fit:
     nrmse_after: float
     noise_floor_nrmse: float
     log_score_gain_per_press: float
+    by_channel: tuple[tuple[float, float, float], ...] = ()
 
     @property
     def improves(self) -> bool:
@@ -109,13 +111,20 @@ class Fit:
 
     @property
     def excess_before(self) -> float:
-        """Square of the error without a mechanism above that of noise, at least 0."""
-        return max(self.nrmse_before**2 - self.noise_floor_nrmse**2, 0.0)
+        """Square of the error without a mechanism above that of noise, at least 0 in each channel: one whose noise was
+        estimated too large hides no other.
+        """
+        return sum(max(before - noise, 0.0) for before, _, noise in self._channels) / len(self._channels)
 
     @property
     def excess_after(self) -> float:
-        """Square of the error with the mechanisms above that of noise, at least 0."""
-        return max(self.nrmse_after**2 - self.noise_floor_nrmse**2, 0.0)
+        """What is left of it with the mechanisms, at least 0."""
+        taken = sum(before - after for before, after, _ in self._channels) / len(self._channels)
+        return max(self.excess_before - taken, 0.0)
+
+    @property
+    def _channels(self) -> tuple[tuple[float, float, float], ...]:
+        return self.by_channel or ((self.nrmse_before**2, self.nrmse_after**2, self.noise_floor_nrmse**2),)
 
     @property
     def share(self) -> float:

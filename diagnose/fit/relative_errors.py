@@ -39,6 +39,16 @@ class RelativeErrors:
         """One sigma of the sum of above_noise of noise alone."""
         return float(np.sqrt(2.0 * np.sum(self._scale**2)))
 
+    def share_taken(self, before: Floats, after: Floats, allowed: float = 0.0) -> float:
+        """Share of what one prediction leaves above noise, before (n,), that another takes away; it leaves after (n,).
+
+        The noise drops out of the difference, and a channel whose noise was estimated too large counts as one without
+        excess and hides that of no other. allowed : what may be left and counts as taken.
+        """
+        excess = float(np.maximum(np.bincount(self.channel, before), 0.0).sum())
+        left = excess - float((before - after).sum())
+        return 1.0 - max(left - allowed, 0.0) / excess if excess > 0.0 else 0.0
+
     def largest(self, squares: Floats) -> float:
         """Root of the sum of squares (n,) of the worst channel."""
         return float(np.sqrt(max(float(np.bincount(self.channel, squares).max()), 0.0)))

@@ -176,8 +176,7 @@ class Judge:
 
     def share(self, one: Hypothesis) -> float:
         """Share of the excess of nothing that a hypothesis accounts for in conditions that were left out."""
-        before, after = (max(float(each.left.sum()), 0.0) for each in (self.nothing, one))
-        return 1.0 - after / before if before > 0.0 else 0.0
+        return self.errors.share_taken(self.nothing.left, one.left)
 
     def apart(self, one: Hypothesis, other: Hypothesis) -> float:
         """Root mean square difference of two forecasts, relative to the signal, of the worst channel."""
@@ -185,8 +184,7 @@ class Judge:
 
     def known_share(self, one: Hypothesis) -> float:
         """The same share, were two sigma of the noise in what it leaves no more than noise."""
-        before, after = float(self.nothing.left.sum()), float(one.left.sum())
-        return 1.0 - max(after - 2.0 * self.errors.noise_sigma, 0.0) / before if before > 0.0 else 0.0
+        return self.errors.share_taken(self.nothing.left, one.left, 2.0 * self.errors.noise_sigma)
 
     def error(self, one: Hypothesis) -> float:
         """Root mean square error of a hypothesis in conditions left out, above noise, of the worst channel."""

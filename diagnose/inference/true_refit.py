@@ -100,29 +100,29 @@ def errors(
     names = tuple(f"{model.runs[run].label}, press {press + 1}" for run, press in (samples.presses[n] for n in presses))
     own = [n for n in presses if n < len(gains)]
     gain = float(np.mean(gains[own])) if settings and own else 0.0
-    old, floor = _relative(model, presses, model.signals(before))
-    new, _ = _relative(model, presses, model.signals(after, settings))
-    return Fit(names, old, new, floor, gain)
+    old, new = (_squares(model, presses, shown) for shown in (model.signals(before), model.signals(after, settings)))
+    by_channel = tuple((missed, left, noise) for (missed, noise), (left, _) in zip(old, new, strict=True))
+    means = np.sqrt(np.mean(by_channel, axis=0)) if by_channel else np.full(3, np.nan)
+    return Fit(names, *means.tolist(), gain, by_channel)
 
 
-def _relative(
+def _squares(
     model: ObservedModel, presses: Sequence[int], signals: Sequence[dict[str, Floats]]
-) -> tuple[float, float]:
-    """Root mean square error over the recording's, each channel counting alike; and that of noise alone."""
-    samples, errors, floors = model.samples, [], []
+) -> list[tuple[float, float]]:
+    """Square of the error over that of the recording, and of noise alone, of each channel that was recorded."""
+    samples, found = model.samples, []
     for channel in samples.channels:
         missed = seen = noise = 0.0
         for block in samples.blocks:
             if block.channel != channel:
                 continue
-            run, found = model.runs[block.run], samples.recording.phases[block.run]
+            run, phases = model.runs[block.run], samples.recording.phases[block.run]
             own = [press for n in presses for number, press in [samples.presses[n]] if number == block.run]
-            rows = block.observed_mask & np.isin(found.press, own)
+            rows = block.observed_mask & np.isin(phases.press, own)
             recorded = run.channels[channel][rows]
             missed += float(((recorded - signals[block.run][channel][rows]) ** 2).sum())
             seen += float((recorded**2).sum())
             noise += len(recorded) * block.whitening.noise.rms**2
         if seen > 0.0:
-            errors.append(missed / seen)
-            floors.append(noise / seen)
-    return float(np.sqrt(np.mean(errors))), float(np.sqrt(np.mean(floors)))
+            found.append((missed / seen, noise / seen))
+    return found

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from diagnose.findings import Fit, Grade
+from diagnose.fit.relative_errors import RelativeErrors
 from diagnose.inference.diagnose import diagnose
 from diagnose.signals.recording import Recording
 from diagnose.vocabulary.base import vocabulary
@@ -210,6 +211,15 @@ def test_shares_are_of_squares_above_noise():
     assert fit.share == pytest.approx(1.0 - 0.08 / 0.24)
     assert replace(fit, nrmse_after=0.05).share == 1.0
     assert replace(fit, nrmse_before=0.1, nrmse_after=0.1).share == 0.0
+
+
+def test_a_channel_whose_noise_was_estimated_too_large_hides_no_other():
+    fit = Fit(("run 1, press 1",), 0.3, 0.2, 0.4, 0.0, ((0.1, 0.0, 0.0), (0.1, 0.1, 0.9)))
+    assert (fit.excess_before, fit.excess_after, fit.share) == pytest.approx((0.05, 0.0, 1.0))
+    errors = RelativeErrors(np.ones(4), np.ones(4), np.array([0, 0, 1, 1]), np.ones(4, dtype=bool))
+    before, after = np.array([0.3, 0.1, -5.0, 1.0]), np.array([0.1, 0.1, -5.1, 1.1])
+    assert errors.share_taken(before, after) == pytest.approx(0.5)
+    assert errors.share_taken(before, before - 0.1 * (errors.channel == 1)) > 0.0
 
 
 @pytest.mark.press
