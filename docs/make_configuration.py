@@ -32,6 +32,7 @@ from softdot.config.not_modelled import NOT_MODELLED  # noqa: E402
 from solve.materials.parameters import PiezoelectricFilm, library_tables  # noqa: E402
 from solve.mechanisms import MECHANISMS  # noqa: E402
 from solve.mechanisms.base import in_short  # noqa: E402
+from solve.readout.part import Amplifier, amplifier_parts  # noqa: E402
 
 Json = dict[str, Any]
 
@@ -49,6 +50,7 @@ TABLES = {
     "`[press]`": "Press",
     "`[press.waveform]`": "Waveform",
     "`[readout]`": "Readout",
+    "`[readout.amplifier]`": "Amplifier",
     "`[mesh]`": "MeshOptions",
     "`[[mechanisms]]`": "Mechanism",
     "`[fabrication]`": "Fabrication",
@@ -75,6 +77,7 @@ HINTS = {
     "Film.material": f"{MATERIAL_NAME}, of model `piezoelectric-film`",
     "Array.grooves": "tables, one for each layer",
     "Groove.depth_mm": "number above 0 and at most the thickness of the layer",
+    "Amplifier.part": "a name of the [built-in amplifiers](#built-in-amplifiers)",
     "Dot.standard": "a name of the [Braille sizes](geometry.md#braille-sizes)",
     "Dot.tilt_deg": "list of 2: number above -90 and below 90, without overlap at rest",
     "Dot.cell": "one character, U+2800 to U+28FF, with `cell_dot` raised",
@@ -88,7 +91,7 @@ HINTS = {
 
 
 def tables_of_keys() -> str:
-    """A section for every table of a configuration, and one for the built-in materials."""
+    """A section for every table of a configuration, and one each for the built-in amplifiers and materials."""
     schema = config_schema()
     definitions = {**schema["$defs"], "Config": schema}
     examples = _read_toml("configuration_examples.toml")
@@ -102,6 +105,7 @@ def tables_of_keys() -> str:
                 parts.append(f"## {MATERIAL}, every model\n\n{_common_note()}\n\n{common}")
             keys = [key for key in keys if key not in (*EVERY_MATERIAL, "model")]
         parts.append(f"## {title}\n\n{about}{_keys(title, name, keys, definitions, examples[name])}")
+    parts.append(f"## Built-in amplifiers\n\n{AMPLIFIERS_NOTE}\n\n{amplifier_table()}")
     parts.append(f"## Built-in materials\n\n{_materials_note()}\n\n{material_table()}")
     return "\n\n".join(parts)
 
@@ -170,6 +174,22 @@ def material_table() -> str:
         rows.append([f"`{name}`", table["model"], constants, table["confidence"], source])
         last = table["source"]
     return _table(["name", "model", "constants", "confidence", "source"], rows)
+
+
+AMPLIFIERS_NOTE = (
+    "Typical values of data sheets (`solve/readout/parts.toml`, `softdot list amplifiers`). Keys of "
+    "`[readout.amplifier]` beside `part` take their place. Without a corner the voltage noise counts as white."
+)
+
+
+def amplifier_table() -> str:
+    """The built-in amplifiers with the values of their data sheets."""
+    keys = [key for key in Amplifier.model_fields if any(key in part for part in amplifier_parts().values())]
+    rows = [
+        [f"`{name}`", part["is"], *(f"{part[key]:g}" if key in part else "–" for key in keys), part["source"]]
+        for name, part in amplifier_parts().items()
+    ]
+    return _table(["part", "what it is", *(f"`{key}`" for key in keys), "source"], rows)
 
 
 def braille_table() -> str:

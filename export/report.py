@@ -40,6 +40,10 @@ CAPTIONS = {
         "Depth, force, charge of each electrode and what is read, along the whole waveform; dots are the states that "
         "were solved.",
     ),
+    "noise": (
+        "Noise of the amplifier",
+        "Spectrum of each part in the recorded voltage, through the circuit; the legend has the root mean squares.",
+    ),
 }
 """Title and one plain sentence for each picture, in the order in which the report shows them."""
 SLICE_CAPTIONS = {
@@ -133,6 +137,7 @@ def headline(summary: Mapping[str, Any]) -> list[dict[str, str]]:
         ("Voltage per depth", sensitivity.get("voltage_per_mm"), "V/mm", "at the deepest step" + at),
         ("Charge per force", sensitivity.get("charge_pC_per_N"), "pC/N", "at the deepest step"),
         ("Least detectable press", sensitivity.get("least_detectable_indentation_um"), "µm", at_noise),
+        ("Least detectable force", sensitivity.get("least_detectable_force_mN"), "mN", at_noise),
         ("Largest film strain", *_strain(film.get("max_principal_strain")), f"principal, {where}"),
         ("Largest film stress", film.get("max_principal_stress_MPa"), "MPa", f"principal, {where}"),
         *_rim_rows(film),

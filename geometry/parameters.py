@@ -69,7 +69,9 @@ class ActsWith:
     def stated_tags(self, table: BaseModel) -> str:
         """The values of the tags in a table, for example "shape = 'half-sine'"; empty where one is missing."""
         stated = {key: getattr(table, key) for key in self.tags}
-        return ", ".join(f"{key} = {value!r}" for key, value in stated.items() if value is not None)
+        tables = {key for key, value in stated.items() if isinstance(value, BaseModel)}
+        shown = (f"{key} = {value!r}" for key, value in stated.items() if value is not None and key not in tables)
+        return ", ".join([*shown, *(f"[{key}] is stated" for key in stated if key in tables)])
 
     def condition(self, defaults: JsonSchema) -> JsonSchema:
         """The condition as JSON Schema of the whole table. defaults : of its keys, which need not be stated."""

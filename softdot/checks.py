@@ -35,6 +35,7 @@ from mesh.sizing import sizing_field
 from mesh.types import Planes
 from softdot.config.schema import Config
 from softdot.memory import needed_GB, refuse_too_little_memory
+from softdot.sensitivity import press_noise
 from solve.materials.film_yield import Yield
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Model
@@ -180,20 +181,45 @@ def result_warnings(model: Model, dot_shape: DotShape, result: PressResult) -> l
     return warnings
 
 
+SAME_VOLTAGE = 1e-3
+"""Relative distance from the end of its range at which a voltage counts as cut."""
 READOUT_ERROR_PERCENT = 5.0
 """Error of the read-out from which a run warns; the summary states it in any case."""
 
 
 def course_warnings(model: Model, result: PressResult, along: PressCourse) -> list[str]:
-    """A warning where too few states were solved to know the voltage of an amplifier."""
-    error = along.readout_error_percent
+    """Warnings where too few states were solved to know the voltage of an amplifier, and of what it adds itself."""
+    error, added = along.readout_error_percent, _amplifier_warnings(model, result, along)
     if along.together_V is None or error <= READOUT_ERROR_PERCENT or not result.converged:
-        return []
+        return added
     return [
+        *added,
         f"the read-out may be off by {figure(error)} % of its largest value, as the charge between {len(result.steps)} "
         f"solved states is interpolated: press.load_steps = {model.press.load_steps} is too few, or state "
-        "mesh.accuracy_percent"
+        "mesh.accuracy_percent",
     ]
+
+
+def _amplifier_warnings(model: Model, result: PressResult, along: PressCourse) -> list[str]:
+    """Warnings where a stated amplifier cuts the signal, alone or with its bias current, and where noise folds."""
+    budget, readout = press_noise(model, result, along), model.readout
+    if budget is None or readout is None or along.together_V is None:
+        return []
+    told, folded = [], budget.above_half_rate_V
+    most, end = float(np.abs(along.together_V).max()), readout.largest_V
+    if end is not None and most >= (1.0 - SAME_VOLTAGE) * end:
+        told.append(f"readout: the voltage is cut at {end:g} V, where amplifier or converter end; use less gain")
+    elif end is not None and most + budget.offset_V > end:
+        told.append(
+            f"readout.amplifier.bias_current_pA: it shifts the voltage by up to {budget.offset_V:.3g} V, which does "
+            f"not fit beside the signal into {end:g} V; the course leaves that shift out"
+        )
+    if folded is not None and folded > 0.5 * budget.rms_V:
+        told.append(
+            f"readout.amplifier.sample_rate_Hz: {1e3 * folded:.3g} of {1e3 * budget.rms_V:.3g} mV of noise are above "
+            "half of it and fold into the samples; state readout.low_pass_Hz"
+        )
+    return told
 
 
 def design_warnings(model: Model) -> list[str]:

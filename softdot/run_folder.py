@@ -145,13 +145,19 @@ def write_outputs(
     dot_shape: DotShape, result: PressResult, summary: dict[str, Any], folder: Path, pictures: Future[dict[str, Path]]
 ) -> None:
     """Write ParaView files of what converged, and the report with the pictures, which another process makes."""
+    from export.noise_figure import noise_figure
     from export.report import write_report
+    from export.view import save_png
     from export.viewer_data import viewer_data
     from export.vtu import write_results
 
     write_results(result.tet_mesh, result, dot_shape, folder / "results")
     viewer = viewer_data(result.tet_mesh, result, dot_shape)
-    write_report(summary, pictures.result(), viewer, folder / "report.html")
+    drawn = pictures.result()
+    if "noise" in summary:
+        drawn = {**drawn, "noise": folder / "pictures" / "noise.png"}
+        save_png(noise_figure(summary["noise"]), drawn["noise"])
+    write_report(summary, drawn, viewer, folder / "report.html")
 
 
 def _report_steps_to(progress: Progress) -> OnStep:

@@ -10,9 +10,10 @@ from foundation.arrays import Floats
 from softdot.config.hashes import config_hash
 from softdot.config.schema import Config
 from softdot.output import RUN
-from softdot.sensitivity import least_detectable, sensitivity
+from softdot.sensitivity import least_detectable, press_noise, sensitivity
 from solve.model import Model, Readout
 from solve.readout.course import PressCourse
+from solve.readout.noise import PER_DECADE, NoiseBudget
 from solve.result import PressResult
 from solve.solution.schedule import fraction
 from solve.waveform import Waveform
@@ -63,6 +64,8 @@ def press_part(model: Model, result: PressResult, along: PressCourse) -> dict[st
     past, solved = history(result), along.solved
     readout_voltage_V = None if along.together_V is None else along.together_V[solved]
     voltage = past.open_circuit_voltage_V if readout_voltage_V is None else readout_voltage_V
+    budget = press_noise(model, result, along)
+    noise_V = (model.readout or Readout()).noise_V if budget is None else budget.rms_V
     part = {
         "indentation_mm": past.indentation_mm,
         "reaction_force_N": past.reaction_force_N,
@@ -79,19 +82,35 @@ def press_part(model: Model, result: PressResult, along: PressCourse) -> dict[st
         "film": film(result),
         "electrodes": electrodes(result, along),
         "sensitivity": {
-            **sensitivity(past.indentation_mm, past.reaction_force_N, past.film_charge_pC, voltage, model.readout),
-            **_instants(past, voltage, along, model.readout),
+            **sensitivity(past.indentation_mm, past.reaction_force_N, past.film_charge_pC, voltage, noise_V),
+            **_instants(past, voltage, along, noise_V),
         },
+        **({} if budget is None else {"noise": _noise_part(budget)}),
         "course": course_part(model, result, along),
     }
     return {**found, "solver": _solver_part(found, result)}
 
 
-def _instants(past: History, voltage_V: Floats, along: PressCourse, readout: Readout | None) -> dict[str, float | None]:
+def _noise_part(budget: NoiseBudget) -> dict[str, Any]:
+    """The noise of the recorded voltage: root mean square, its parts, and their spectra at ten frequencies a decade."""
+    shown = slice(None, None, PER_DECADE // 10)
+    return {
+        "rms_V": budget.rms_V,
+        "parts_V": dict(budget.parts_V),
+        "above_half_rate_V": budget.above_half_rate_V,
+        "bias_offset_V": budget.offset_V,
+        "frequency_Hz": budget.frequency_Hz[shown],
+        "density_V_per_rtHz": {
+            name: np.sqrt(one[shown]) for name, one in budget.density_V2_per_Hz.items() if one.any()
+        },
+    }
+
+
+def _instants(past: History, voltage_V: Floats, along: PressCourse, noise_V: float) -> dict[str, float | None]:
     """Times of the stated voltage per depth, and of the least detectable depth on the way in."""
     times = along.time_s[along.solved]
     deepest = int(np.argmax(past.indentation_mm))
-    least = least_detectable(past.indentation_mm, voltage_V, (readout or Readout()).noise_V)
+    least = least_detectable(past.indentation_mm, voltage_V, noise_V)
     way_in = slice(0, int(along.solved[deepest]) + 1)
     depth = np.maximum.accumulate(MM * along.indentation_m[way_in])
     when = None if least is None else float(np.interp(least, depth, along.time_s[way_in]))

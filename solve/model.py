@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
-from geometry.parameters import STATED, ActsWith, Dot, Finite, NonNegative, Positive, Segment, Table
+from geometry.parameters import ABSENT, STATED, ActsWith, Dot, Finite, NonNegative, Positive, Segment, Table
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.physics import Physics
+from solve.readout.part import Amplifier
 from solve.waveform import Waveform
 
 if TYPE_CHECKING:
@@ -60,8 +61,8 @@ class Readout(Table):
     input_resistance_MOhm: Annotated[Positive | None, ActsWith(mode=("voltage",))] = Field(
         None, description="parallel to the film; none: infinite"
     )
-    input_capacitance_pF: Annotated[NonNegative, ActsWith(mode=("voltage",))] = Field(
-        0.0, description="of amplifier and cable"
+    input_capacitance_pF: Annotated[NonNegative, ActsWith(mode=("voltage",), amplifier=STATED)] = Field(
+        0.0, description="of amplifier and cable; behind a charge amplifier it makes noise alone"
     )
     feedback_pF: Annotated[Positive | None, ActsWith(needed=True, mode=("charge",))] = Field(
         None, description="feedback capacitance"
@@ -76,7 +77,12 @@ class Readout(Table):
     )
     limit_V: Positive | None = Field(None, description="the amplifier saturates at plus and minus this voltage")
     polarity: Literal[1, -1] = Field(1, description="sign of the voltage, as wired")
-    noise_V: Positive = Field(1e-3, description="noise (one sigma) for the least detectable indentation")
+    noise_V: Annotated[Positive, ActsWith(amplifier=ABSENT)] = Field(
+        1e-3, description="noise (one sigma) for the least detectable press"
+    )
+    amplifier: Amplifier | None = Field(
+        None, description="the amplifier as it is bought, from which the noise is calculated"
+    )
 
     @field_validator("polarity", mode="before")
     @classmethod
@@ -85,6 +91,34 @@ class Readout(Table):
         if isinstance(value, bool):
             raise ValueError("must be 1 or -1")
         return value
+
+    @model_validator(mode="after")
+    def _noise_ends(self) -> Self:
+        part = self.amplifier
+        if part is None or part.voltage_noise_nV_per_rtHz == 0.0:
+            return self
+        if part.bandwidth_Hz is None and part.gain_bandwidth_MHz is None and self.low_pass_Hz is None:
+            raise ValueError(
+                "amplifier.bandwidth_Hz is missing: white noise has no end without it, "
+                "amplifier.gain_bandwidth_MHz or low_pass_Hz"
+            )
+        return self
+
+    @property
+    def whole_input_pF(self) -> float:
+        """Capacitance of cable and amplifier together."""
+        return self.input_capacitance_pF + (0.0 if self.amplifier is None else self.amplifier.input_capacitance_pF)
+
+    @property
+    def gain(self) -> float:
+        """Recorded voltage over that of the input, or of the feedback, with the sign of the wiring."""
+        return self.polarity * (1.0 if self.amplifier is None else self.amplifier.gain)
+
+    @property
+    def largest_V(self) -> float | None:
+        """The largest voltage that can be recorded: where the amplifier saturates, or where the converter ends."""
+        ends = [self.limit_V, None if self.amplifier is None else self.amplifier.adc_range_V]
+        return min((end for end in ends if end is not None), default=None)
 
 
 @dataclass(frozen=True)

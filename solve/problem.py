@@ -195,7 +195,7 @@ def _circuit_terms(
         own_uS = float(leak_uS[np.flatnonzero(joined)[0]])  # its images have the same
         conductance_uS = 1.0 / (readout.input_resistance_MOhm or np.inf) + own_uS
         resistance = (1e6 / conductance_uS if conductance_uS else np.inf) * farad / share
-        input_capacitance = 1e-12 * readout.input_capacitance_pF / farad * share
+        input_capacitance = 1e-12 * readout.whole_input_pF / farad * share
         yield Circuit(int(dof), float(film.capacitance()[joined].sum()), input_capacitance, resistance)
     if mutual_F.any():
         known, of = np.unique(dofs, return_inverse=True)

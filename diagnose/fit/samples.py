@@ -168,7 +168,7 @@ def used_mask(run: Run, channel: str) -> Bools:
 
     A limit that it does not state is itself what has to be explained.
     """
-    stated = run.readout is not None and run.readout.limit_V is not None
+    stated = run.readout is not None and run.readout.largest_V is not None
     return run.usable(channel) if stated else run.valid[channel]
 
 

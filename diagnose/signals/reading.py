@@ -121,7 +121,7 @@ def _amplifier_limit_mask(name: str, values: Floats, readout: Readout | None) ->
     """Flags (t,) of saturated samples of an amplifier; a motion or a force may well stand still at its largest."""
     if not name.startswith("voltage"):
         return np.zeros(len(values), dtype=bool)
-    return saturation_mask(values, readout.limit_V if readout is not None else None)
+    return saturation_mask(values, readout.largest_V if readout is not None else None)
 
 
 def _bridge_gaps(time_s: Floats, drive: Floats) -> Floats:

@@ -82,7 +82,7 @@ class Scene:
     @property
     def capacitance_pF(self) -> float:
         """Capacitance of film and input together, the least of the runs."""
-        inputs = [readout.input_capacitance_pF for readout in self.readouts if readout.mode == "voltage"]
+        inputs = [readout.whole_input_pF for readout in self.readouts if readout.mode == "voltage"]
         return self.share * film_capacitance_pF(self.model) + min(inputs, default=0.0)
 
     @property

@@ -4,7 +4,7 @@ from typing import Any
 
 from softdot.command_line.options import add_set
 
-LISTED = ("materials", "standards", "mechanisms")
+LISTED = ("materials", "standards", "mechanisms", "amplifiers")
 TEMPLATES = ("default", "slice", "dome", "circuit", "time-dependent")
 
 

@@ -1,4 +1,4 @@
-"""softdot list: the built-in materials, Braille standards and mechanisms, with where they come from."""
+"""softdot list: the built-in materials, Braille standards, mechanisms and amplifiers, with where they come from."""
 
 import sys
 from argparse import Namespace
@@ -74,4 +74,16 @@ def _mechanisms() -> list[dict[str, Any]]:
     ]  # fmt: skip
 
 
-LISTS = {"materials": _materials, "standards": _standards, "mechanisms": _mechanisms}
+def _amplifiers() -> list[dict[str, Any]]:
+    from solve.readout.part import ABOUT, amplifier_parts
+
+    return [
+        {
+            "name": name, "is": part["is"],
+            "values": {key: value for key, value in part.items() if key not in ABOUT}, "source": part["source"],
+        }
+        for name, part in amplifier_parts().items()
+    ]  # fmt: skip
+
+
+LISTS = {"materials": _materials, "standards": _standards, "mechanisms": _mechanisms, "amplifiers": _amplifiers}

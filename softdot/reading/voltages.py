@@ -142,7 +142,7 @@ def restored_charge_pC(reader: Reader, heard: Voltages) -> Floats:
     restored = np.empty_like(heard.voltage_V)
     for j, film in enumerate(reader.kernel.capacitance_pF):
         capacitance, resistance = input_of(reader.readout, 1e-12 * float(film))
-        voltage = reader.readout.polarity * heard.voltage_V[:, j]
+        voltage = heard.voltage_V[:, j] / reader.readout.gain
         leaked = np.concatenate([[0.0], np.cumsum(0.5 * (voltage[1:] + voltage[:-1]))]) * heard.step_s
         restored[:, j] = 1e12 * (capacitance * voltage + leaked / resistance)
     return restored

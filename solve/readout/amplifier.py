@@ -14,7 +14,8 @@ from solve.decay import mean_decay
 from solve.model import Readout
 from solve.physics import Physics
 from solve.readout.filters import Filter
-from solve.readout.stages import Saturation, Stage
+from solve.readout.part import Amplifier
+from solve.readout.stages import ConverterRange, Gain, Saturation, Stage
 
 
 def amplify(time_s: Floats, charge_C: Floats, capacitance_F: float, readout: Readout, physics: Physics) -> Floats:
@@ -34,7 +35,7 @@ def input_of(readout: Readout, film_capacitance_F: float) -> tuple[float, float]
     """Capacitance (F) and resistance (Ohm) into which the charge flows; both negative behind a charge amplifier."""
     if readout.mode == "charge":
         return -1e-12 * (readout.feedback_pF or np.inf), -1e6 * (readout.feedback_MOhm or np.inf)
-    capacitance = film_capacitance_F + 1e-12 * readout.input_capacitance_pF
+    capacitance = film_capacitance_F + 1e-12 * readout.whole_input_pF
     return capacitance, 1e6 * (readout.input_resistance_MOhm or np.inf)
 
 
@@ -48,7 +49,17 @@ def stages(readout: Readout, physics: Physics, channel: int = 0) -> list[Stage]:
     low = [] if readout.low_pass_Hz is None else [Filter(readout.low_pass_Hz, order)]
     high = [] if readout.high_pass_Hz is None else [Filter(readout.high_pass_Hz, order, "high")]
     own = [stage for part in physics.channels for stage in part.stages_behind(channel)]
-    return sorted([*limit, *low, *high, *physics.stages, *own], key=lambda stage: stage.place)
+    bought = bought_stages(readout.amplifier)
+    return sorted([*limit, *low, *high, *bought, *physics.stages, *own], key=lambda stage: stage.place)
+
+
+def bought_stages(part: Amplifier | None) -> list[Stage]:
+    """Stages of an amplifier as it is bought: gain, bandwidth, range of the converter."""
+    if part is None:
+        return []
+    gain: list[Stage] = [] if part.gain == 1.0 else [Gain(part.gain)]
+    slow: list[Stage] = [] if part.bandwidth_Hz is None else [Filter(part.bandwidth_Hz, 1)]
+    return [*gain, *slow, *([] if part.adc_range_V is None else [ConverterRange(part.adc_range_V)])]
 
 
 @nb.njit(cache=True)

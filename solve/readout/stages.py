@@ -12,8 +12,8 @@ import numpy as np
 
 from foundation.arrays import Floats
 
-INPUT, LIMIT, FILTER = 0, 1, 2
-"""Where a stage stands: at the input, at the limit of the amplifier, behind it."""
+INPUT, GAIN, LIMIT, FILTER, CONVERTER = range(5)
+"""Where a stage stands: at the input, where it is amplified, at the limit of the amplifier, behind it, at its end."""
 
 
 class Stage(Protocol):
@@ -46,6 +46,22 @@ class Hum:
 
 
 @dataclass(frozen=True)
+class Gain:
+    """The gain of the amplifier, a number."""
+
+    gain: float
+    place: ClassVar[int] = GAIN
+
+    def apply(self, time_s: Floats, voltage_V: Floats) -> Floats:
+        """Amplify a voltage (t,), whatever the times."""
+        return self.gain * voltage_V
+
+    def largest_gain(self) -> float:
+        """The gain itself."""
+        return abs(self.gain)
+
+
+@dataclass(frozen=True)
 class Saturation:
     """A limit of the voltage. limit_V : never exceeded. sharpness : p of the knee, infinite for none."""
 
@@ -65,3 +81,10 @@ class Saturation:
     def largest_gain(self) -> float:
         """One: a limit enlarges no error."""
         return 1.0
+
+
+@dataclass(frozen=True)
+class ConverterRange(Saturation):
+    """The range of a converter, which is a hard limit behind all filters."""
+
+    place: ClassVar[int] = CONVERTER

@@ -294,7 +294,7 @@ def stated_probability(passed: PassedCell) -> float:
 
 
 def _circuit(kernel: ArrayKernel, readout: Readout, used: np.ndarray) -> tuple[Floats, Floats]:
-    """Capacitances in F and resistances in Ohm of the segments in use, with the sign of the amplifier."""
+    """Capacitances in F and resistances in Ohm of the segments in use, seen behind the gain of the amplifier."""
     pairs = [input_of(readout, 1e-12 * float(kernel.capacitance_pF[k])) for k in used]
     capacitance, resistance = np.array(pairs).T
-    return capacitance * readout.polarity, resistance * readout.polarity
+    return capacitance / readout.gain, resistance * readout.gain
