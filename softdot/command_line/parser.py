@@ -5,6 +5,7 @@ from typing import Any, NoReturn
 
 from softdot.command_line.braille_reading import add_read
 from softdot.command_line.configurations import add_check, add_list, add_new, add_schema
+from softdot.command_line.exports import add_export
 from softdot.command_line.fabrication import add_kit, add_plate
 from softdot.command_line.presses import add_array, add_run, add_studio, add_sweep, add_verify
 from softdot.command_line.recordings import add_convert, add_diagnose, add_material
@@ -63,6 +64,7 @@ def parser() -> argparse.ArgumentParser:
     add_prove(commands)
     add_kit(commands)
     add_plate(commands)
+    add_export(commands)
     add_array(commands)
     add_read(commands)
     add_verify(commands)
