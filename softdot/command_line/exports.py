@@ -24,3 +24,12 @@ def add_export(commands: Any) -> None:
     spice.add_argument("source", metavar="FOLDER_OR_CONFIG", help="folder of softdot run, or a configuration to press")
     add_set(spice)
     add_output(spice)
+    robot = kinds.add_parser(
+        "robot",
+        help="a kernel as the skin of a finger in MuJoCo",
+        description="Write a kernel, a sensor callback that reads it with NumPy alone, and a finger with that skin as "
+        "a model of MuJoCo.",
+        epilog="softdot export robot cell -o finger && python finger/slide.py",
+    )
+    robot.add_argument("source", metavar="KERNEL", help="a folder of softdot array --kernel")
+    add_output(robot)

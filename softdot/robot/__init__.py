@@ -1,0 +1,1 @@
+"""The skin of a sensor in a robot simulator, made from a kernel."""
