@@ -1,4 +1,4 @@
-"""The arguments of the commands on what was measured: material, convert and diagnose."""
+"""The arguments of the commands on what was measured: material, convert, diagnose and fit."""
 
 from typing import Any
 
@@ -106,3 +106,17 @@ def add_diagnose(commands: Any) -> None:
     diagnose.add_argument("--seed", type=int, metavar="N", help="seed of everything random, instead of rig.toml's")
     add_scheduler(diagnose)
     add_output(diagnose)
+
+
+def add_fit(commands: Any) -> None:
+    """Add the command softdot fit."""
+    fit = commands.add_parser(
+        "fit",
+        help="fit the read-out of a rig to a recording, without a diagnosis",
+        description="Fit resistance and capacitance of the read-out, and gain, offset and lag of each run, to the "
+        "voltages of a recording: values, intervals, correlations and what is left.",
+        epilog="docs/recordings.md describes the format of a recording. " + EXIT_STATUS,
+    )
+    fit.add_argument("recording", metavar="RECORDING", help="a folder with rig.toml and CSV files")
+    fit.add_argument("--only", required=True, choices=("readout",), help="what to fit")
+    add_output(fit)

@@ -5,7 +5,7 @@ lags have the widths that rig.toml declares, or DEFAULT_WIDTHS: charge over capa
 only as far as the gain is known.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -65,12 +65,16 @@ class ReadoutFit:
 def fit_readout(rig: Rig, report: Report) -> ReadoutFit:
     """Fit the read-out of a rig with a segment. InputError for what this cannot fit, by name; NoEquilibriumError."""
     config, readout = _refused(rig)
-    engine, recording = _engine(rig, config, readout, report)
+    return fit_engine(_engine(rig, config, readout, report), report)
+
+
+def fit_engine(engine: ReadoutEngine, report: Report) -> ReadoutFit:
+    """Fit R and C of an engine, with the nuisances of its recording, from several starts."""
     report("fit", 0, 1)
-    model = ObservedModel(Samples(recording, noise_models(recording)), engine)
+    model = ObservedModel(Samples(engine.recording, noise_models(engine.recording)), engine)
     baseline = fit_baseline(model)
-    starts = [np.array([one.starts[0] for one in _coordinates(engine)])]
-    starts += [np.array([start, 0.0]) for start in _coordinates(engine)[0].starts[1:]]
+    first, second = (one.coordinates[0].starts for one in engine.candidates)
+    starts = [np.array([start, second[0]]) for start in first]
     fits = [fit_mechanisms(model, baseline, engine.candidates, start, 0.0) for start in starts]
     return _outcome(model, engine, max(fits, key=lambda one: one.evidence))
 
@@ -99,8 +103,8 @@ def _refused(rig: Rig) -> tuple[Config, Readout]:
     return rig.config, first
 
 
-def _engine(rig: Rig, config: Config, readout: Readout, report: Report) -> tuple[ReadoutEngine, Recording]:
-    """The read-out alone, with the charges of the rig's baseline, and the runs that it explains."""
+def _engine(rig: Rig, config: Config, readout: Readout, report: Report) -> ReadoutEngine:
+    """The read-out alone, with the charges of the rig's baseline and the voltages that it explains."""
     from diagnose.engines.segment.engine import segment_engine
     from softdot.config.model import model_of
 
@@ -115,15 +119,15 @@ def _engine(rig: Rig, config: Config, readout: Readout, report: Report) -> tuple
     amplifier: Model = with_mechanisms(replace(model, readout=readout), electrical)
     asked = with_voltages_alone(recording, amplifier.readout or Readout())
     asked = replace(asked, runs=tuple(replace(run, nuisance=_widths(run)) for run in asked.runs))
+    told = zip(charges, behind.runs, strict=True)
     return ReadoutEngine(
         recording=asked,
-        charge_C=tuple(-1e-9 * np.column_stack([of[name] for name in run.voltages]) for of, run in zip(
-            charges, behind.runs, strict=True)),
+        charge_C=tuple(-1e-9 * np.column_stack([of[name] for name in run.voltages]) for of, run in told),
         capacitance_F=_one_for_each(segment.first_presses.film.electrodes[:, 0], len(behind.runs[0].voltages)),
         readout=amplifier.readout or Readout(),
         physics=amplifier.physics,
         error=float(segment.accuracy.get("voltage_V", 0.0)),
-    ), asked  # fmt: skip
+    )
 
 
 def _one_for_each(capacitance_F: Floats, channels: int) -> Floats:
@@ -136,10 +140,6 @@ def _widths(run: Run) -> dict[str, float]:
     largest = max(float(np.abs(run.channels[name][run.valid[name]]).max()) for name in run.voltages)
     widths = {**DEFAULT_WIDTHS, "offset_V": OFFSET_SHARE * largest}
     return {name: run.nuisance.get(name, width) for name, width in widths.items()}
-
-
-def _coordinates(engine: ReadoutEngine) -> Sequence:
-    return [one.coordinates[0] for one in engine.candidates]
 
 
 def _outcome(model: ObservedModel, engine: ReadoutEngine, fit: Fitted) -> ReadoutFit:
@@ -164,8 +164,10 @@ def _outcome(model: ObservedModel, engine: ReadoutEngine, fit: Fitted) -> Readou
         priors=np.array([np.inf, np.inf, *(sigma for _, sigma in told.values())]),
         correlation=correlation,
         intervals=intervals,
-        stated={key: float(getattr(engine.readout, key) or np.inf) for key in engine.keys[:1]}
-        | {key: float(getattr(engine.readout, key) or 0.0) for key in engine.keys[1:]},
+        stated={
+            key: float(getattr(engine.readout, key) or nothing)
+            for key, nothing in zip(engine.keys, (np.inf, 0.0), strict=True)
+        },
         shown=labelled(model, nuisances, fit.settings),
         noise_rms={key: float(law["rms"]) for key, law in model.samples.noise_summaries().items()},
         misfit=float(np.sqrt(np.mean(left**2))),
@@ -180,13 +182,14 @@ def _tangents(fit: Fitted) -> Floats:
 
 def _covariance(fit: Fitted) -> Floats:
     """Covariance (q + p, q + p) of coordinates and nuisances, with the engine's own error integrated out."""
-    design = np.hstack([fit.system.weighted_rows(fit.slopes), fit.system.weighted_rows(fit.system.nuisance_design)])
-    count, prior = fit.slopes.shape[1], np.zeros(design.shape[1])
-    with np.errstate(divide="ignore"):
-        prior[count:] = np.where(fit.system.sigma > 0.0, fit.system.sigma, 1e-12) ** -2.0
-    inverse = np.linalg.pinv(design.T @ design + np.diag(prior), hermitian=True)
+    count, sigma = fit.slopes.shape[1], fit.system.sigma
+    columns = [fit.system.weighted_rows(fit.slopes), sigma * fit.system.weighted_rows(fit.system.nuisance_design)]
+    design = np.hstack(columns)  # nuisances in units of their priors
+    prior = np.concatenate([np.zeros(count), np.ones(len(sigma))])
+    inverse = np.linalg.inv(design.T @ design + np.diag(prior))
     kept = count + len(fit.system.values)
-    return np.asarray(inverse[:kept, :kept])
+    scale = np.concatenate([np.ones(count), sigma])[:kept]
+    return np.asarray(inverse[:kept, :kept] * np.outer(scale, scale))
 
 
 def _slopes_of_keys(engine: ReadoutEngine, fit: Fitted) -> Floats:
