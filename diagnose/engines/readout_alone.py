@@ -133,12 +133,12 @@ class ReadoutEngine(SolvedOutright):
 
 def with_voltages_alone(recording: Recording, readout: Readout) -> Recording:
     """The runs with their drive and their voltages, on another amplifier."""
-    runs = []
-    for run in recording.runs:
-        kept = {run.drive, *run.voltages}
-        parts = {
-            name: {key: one for key, one in getattr(run, name).items() if key in kept}
-            for name in ("channels", "valid", "saturated")
-        }
-        runs.append(replace(run, readout=readout, **parts))
-    return replace(recording, runs=tuple(runs))
+    return replace(recording, runs=tuple(_with_voltages_alone(run, readout) for run in recording.runs))
+
+
+def _with_voltages_alone(run: Run, readout: Readout) -> Run:
+    """A run with its drive and its voltages."""
+    kept = (run.drive, *run.voltages)
+    channels = {name: run.channels[name] for name in kept}
+    valid, saturated = ({name: flags[name] for name in kept} for flags in (run.valid, run.saturated))
+    return replace(run, readout=readout, channels=channels, valid=valid, saturated=saturated)

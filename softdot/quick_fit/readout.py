@@ -142,8 +142,19 @@ def _widths(run: Run) -> dict[str, float]:
     return {name: run.nuisance.get(name, width) for name, width in widths.items()}
 
 
+def _with_common_gain(model: ObservedModel, fit: Fitted) -> Fitted:
+    """Fit with a gain that all runs share, as wide as that of one: else many runs would seem to know a capacitance.
+
+    It widens intervals and moves no value.
+    """
+    gains = np.array([one.name == "gain" for one in model.nuisances])
+    common = fit.system.nuisance_design[:, np.flatnonzero(gains)].sum(axis=1, keepdims=True)
+    return replace(fit, system=fit.system.with_nuisance_columns(common, model.sigma[gains].max(keepdims=True)))
+
+
 def _outcome(model: ObservedModel, engine: ReadoutEngine, fit: Fitted) -> ReadoutFit:
     nuisances = fit.closest_nuisances(model)
+    fit = _with_common_gain(model, fit)
     told = nuisance_values(model, nuisances)
     covariance, jacobian = _covariance(fit), _slopes_of_keys(engine, fit)
     scale = np.concatenate([jacobian, np.ones(len(nuisances))])

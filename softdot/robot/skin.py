@@ -90,7 +90,7 @@ class Skin:
         here, body = model.site(site).id, model.site_bodyid[model.site(site).id]
         tips = [n for n in range(model.nsite) if model.site(n).name.startswith(prefix)]
         address = int(model.sensor_adr[model.sensor(site).id])
-        state = {"time": 0.0, "charge": np.zeros(len(self.labels))}
+        state: dict[str, Any] = {"time": 0.0, "charge": np.zeros(len(self.labels))}
 
         def passive(_: Any, data: Any) -> None:
             turn, middle = data.site_xmat[here].reshape(3, 3), data.site_xpos[here]
