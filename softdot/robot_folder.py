@@ -12,7 +12,7 @@ from softdot.arrays.kernel import ArrayKernel, load_kernel
 from softdot.json_files import write_json
 from softdot.output import Product, staged_folder
 from softdot.reading.kernels import check_kernel, electronics_of, readout_of
-from softdot.robot.skin import Skin
+from softdot.robot.skin import RobotSkin
 from solve.readout.amplifier import input_of
 
 SCRIPTS = ("skin.py", "slide.py", "finger.xml")
@@ -33,7 +33,7 @@ def write_robot(source: Path, out: Path) -> dict[str, Any]:
         shutil.copyfile(source / "kernel.npz", folder / "kernel.npz")
         write_json(folder / ROBOT.summary, summary)
         _write_scripts(kernel, folder)
-        summary["readings_per_s"] = readings_per_s(Skin(folder))
+        summary["readings_per_s"] = readings_per_s(RobotSkin(folder))
         write_json(folder / ROBOT.summary, summary)
     return summary
 
@@ -64,7 +64,7 @@ def _write_scripts(kernel: ArrayKernel, folder: Path) -> None:
     (folder / "finger.xml").write_text(text, "utf-8")
 
 
-def readings_per_s(skin: Skin) -> float:
+def readings_per_s(skin: RobotSkin) -> float:
     """Readings per second of processor time, a press and its voltages each, at places by chance."""
     random = np.random.default_rng(0)
     ends = [(axis[0], axis[-1]) for axis in skin.axes]

@@ -29,7 +29,7 @@ def add_export(commands: Any) -> None:
         help="a kernel as the skin of a finger in MuJoCo",
         description="Write a kernel, a sensor callback that reads it with NumPy alone, and a finger with that skin as "
         "a model of MuJoCo.",
-        epilog="softdot export robot cell -o finger && python finger/slide.py",
+        epilog="softdot export robot cell -o finger, then python slide.py in that folder",
     )
     robot.add_argument("source", metavar="KERNEL", help="a folder of softdot array --kernel")
     add_output(robot)

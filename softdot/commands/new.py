@@ -92,7 +92,8 @@ TABLES = {
     "": "Config", "segment": "Segment", "segment.effector": "Effector", "segment.medium1": "Medium",
     "segment.film": "Film", "[segment.film.electrodes]": "Electrode", "segment.medium2": "Medium",
     "[segment.bonds]": "Bond", "array": "Array", "[array.grooves]": "Groove", "dot": "Dot", "press": "Press",
-    "press.waveform": "Waveform", "readout": "Readout", "mesh": "MeshOptions", "[mechanisms]": "Mechanism",
+    "press.waveform": "Waveform", "readout": "Readout", "readout.amplifier": "Amplifier",
+    "mesh": "MeshOptions", "[mechanisms]": "Mechanism",
     "fabrication": "Fabrication", "fabrication.casting.my-rubber": "CastingNumbers",
 }  # fmt: skip
 """Table -> its definition in the schema; those in brackets may be repeated."""

@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 Dot = tuple[float, float, float]
 
 
-class Skin:
+class RobotSkin:
     """Tables of a kernel and the state of its amplifiers.
 
     too_deep : how often a dot was deeper than the tables go; it then reads as at their end.

@@ -2,8 +2,9 @@
 
 import copy
 import tomllib
+from collections import ChainMap
 from dataclasses import replace
-from itertools import permutations
+from itertools import permutations, product
 
 import numpy as np
 import pytest
@@ -41,6 +42,8 @@ def example(name, schema):
     """A value that a key allows, other than its default."""
     kinds = [one for one in schema.get("anyOf", [schema]) if one.get("type") != "null"]
     (kind,) = kinds
+    if "$ref" in kind:
+        return {}
     if "enum" in kind:
         return kind["enum"][-1]
     if kind["type"] == "array":
@@ -60,10 +63,11 @@ def conditions():
     for way, kind in TABLES.items():
         properties = SCHEMA["$defs"][kind.__name__]["properties"]
         for name, acts in kind.conditional_keys():
-            for holds in (True, False):
-                for tag, wanted in acts.tags.items():
-                    for tags in beside(tag, wanted, properties[tag], holds):
-                        yield way, name, {**tags, name: example(name, properties[name])}, holds
+            told = {name: example(name, properties[name])}
+            for tag, wanted in acts.tags.items():  # one of them is enough
+                yield from ((way, name, {**tags, **told}, True) for tags in beside(tag, wanted, properties[tag], True))
+            for none in product(*(beside(tag, wanted, properties[tag], False) for tag, wanted in acts.tags.items())):
+                yield way, name, {**dict(ChainMap(*none)), **told}, False
 
 
 CONDITIONS = list(conditions())

@@ -112,7 +112,7 @@ def test_a_finer_mesh_costs_more(checked):
     assert all(fine[key] > coarse[key] for key in ("tetrahedra", "unknowns", "time_s", "memory_GB"))
 
 
-LISTED = [("materials", "sylgard-184"), ("standards", "ada"), ("mechanisms", "friction")]
+LISTED = [("materials", "sylgard-184"), ("standards", "ada"), ("mechanisms", "friction"), ("amplifiers", "LMP7721")]
 
 
 @pytest.mark.parametrize(("what", "known"), LISTED)

@@ -31,7 +31,7 @@ from tests.softdot.stand_ins import AtOnce
 
 FOLDER = Path(__file__).parents[2] / "examples"
 SHORT = FOLDER / "mechanisms"
-NOT_RUN = ("sweep", "array-cell", "array-designs")  # spaces, and several segments
+NOT_RUN = ("sweep", "array-cell", "array-designs", "rig")  # spaces, several segments, a recording
 RUNS = sorted(path for path in FOLDER.rglob("*.toml") if path.stem not in NOT_RUN)
 LAWS = ("mooney-rivlin", "yeoh", "knowles", "ogden", "hyperfoam")
 FACTOR = 337  # the paper's ratio of simulated to measured voltage

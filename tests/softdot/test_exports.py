@@ -15,7 +15,7 @@ from scipy.interpolate import PchipInterpolator
 from export.netlist import netlist
 from foundation.errors import InputError
 from softdot.cli import main
-from softdot.robot.skin import Skin
+from softdot.robot.skin import RobotSkin
 from softdot.spice_folder import write_spice
 from solve.model import Readout
 from solve.physics import Physics
@@ -101,7 +101,7 @@ def test_a_skin_reads_the_kernel_behind_its_amplifiers_fast_enough(folder, tmp_p
     assert main(["export", "robot", str(folder), "-o", str(tmp_path / "out"), "--json"]) == 0
     told, kernel = json.loads(capsys.readouterr().out), made_kernel()
     assert told["readings_per_s"] > 20_000
-    skin, random = Skin(tmp_path / "out"), np.random.default_rng(1)
+    skin, random = RobotSkin(tmp_path / "out"), np.random.default_rng(1)
     for x, y, depth in random.uniform([-4.9, -5.4, -0.05], [4.9, 5.4, 0.3], (50, 3)):
         charge, force = kernel.of_one(np.array(x), np.array(y), np.array(depth))
         found, push = skin.press(x, y, depth)
