@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from softdot.config.hashes import config_hash
     from softdot.config.loading import load_config
     from softdot.config.schema import Config, config_schema
+    from softdot.families.folder import load_family
     from softdot.pressed import ConvergenceWarning, Pressed, ResultWarning
     from softdot.scripting import Verdict, derivatives, diagnose, run_config, sweep
 
@@ -23,7 +24,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Case", "Config", "ConvergenceWarning", "InputError", "MeshingError", "Pressed", "ResultWarning", "Verdict",
-    "__version__", "config_hash", "config_schema", "derivatives", "diagnose", "load_config", "run_config", "sweep",
+    "__version__", "config_hash", "config_schema", "derivatives", "diagnose", "load_config", "load_family", "run_config",
+    "sweep",
 ]  # fmt: skip
 refuse_foreign_packages()
 

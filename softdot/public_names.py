@@ -14,6 +14,7 @@ HOMES = {
     "derivatives": "softdot.scripting",
     "diagnose": "softdot.scripting",
     "load_config": "softdot.config.loading",
+    "load_family": "softdot.families.folder",
     "run_config": "softdot.scripting",
     "sweep": "softdot.scripting",
 }

@@ -1,5 +1,6 @@
-"""The arguments of the commands that press: run, sweep, array, verify and studio."""
+"""The arguments of the commands that press: run, sweep, family, array, verify and studio."""
 
+from argparse import ArgumentTypeError
 from typing import Any
 
 from softdot.command_line.options import EXIT_STATUS, add_config, add_output, add_scheduler, add_set
@@ -37,6 +38,46 @@ def add_sweep(commands: Any) -> None:
     add_set(sweep)
     add_scheduler(sweep)
     add_output(sweep)
+
+
+def add_family(commands: Any) -> None:
+    """Add the command softdot family."""
+    family = commands.add_parser(
+        "family",
+        help="press a few designs of a space so that all others are answered in milliseconds",
+        description="Press designs of a space, each with its derivatives, until presses that took no part are answered "
+        "within the asked accuracy; softdot.load_family answers all others. A stopped command goes on where it was.",
+        epilog="docs/family.md explains SPACE.toml and the answers. " + EXIT_STATUS,
+    )
+    family.add_argument("space", metavar="SPACE.toml", help="a configuration and its axes, as of softdot sweep")
+    family.add_argument(
+        "--accuracy", type=percent, nargs=2, default=(1.0, 1.5), metavar=("FORCE", "VOLTAGE"),
+        help="errors in percent that 95 %% of the designs stay below; default: 1 1.5",
+    )  # fmt: skip
+    family.add_argument(
+        "--presses", type=count_of_presses, default=80, metavar="N", help="most presses; default: 80"
+    )
+    add_set(family)
+    add_scheduler(family)
+    add_output(family)
+
+
+def percent(text: str) -> float:
+    """A percentage between 0.01 and 50. ArgumentTypeError."""
+    try:
+        value = float(text)
+    except ValueError:
+        raise ArgumentTypeError(f"'{text}' is no number") from None
+    if not 0.01 <= value <= 50.0:
+        raise ArgumentTypeError(f"{text} is not between 0.01 and 50 percent")
+    return value
+
+
+def count_of_presses(text: str) -> int:
+    """A whole number between 8 and 1000. ArgumentTypeError."""
+    if not text.isdecimal() or not 8 <= int(text) <= 1000:
+        raise ArgumentTypeError(f"'{text}' is no whole number between 8 and 1000")
+    return int(text)
 
 
 def add_array(commands: Any) -> None:

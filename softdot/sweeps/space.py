@@ -63,15 +63,15 @@ def space_from(tables: Mapping[str, Any]) -> Space:
     acts beside no value of another axis. A point whose combination alone cannot be built stays, with its reason. A key,
     of the file or of an axis, is left out at a point where it does not act beside the values of the axes.
     """
-    sweep = _sweep(tables)
+    sweep = sweep_of(tables)
     base = {name: table for name, table in tables.items() if name != "sweep"}
     rows = sample_points(sweep)
-    points = tuple(_point(base, sweep, row) for row in rows)
+    points = tuple(point_at(base, sweep, row) for row in rows)
     _refuse_bad_axes(base, sweep, rows, points)
     return Space(tables, sweep, points)
 
 
-def _sweep(tables: Mapping[str, Any]) -> Sweep:
+def sweep_of(tables: Mapping[str, Any]) -> Sweep:
     """The table [sweep]. InputError."""
     if "sweep" not in tables:
         raise InputError("sweep is missing: SPACE.toml needs a table [sweep] with at least one [[sweep.axes]]")
@@ -82,7 +82,7 @@ def _sweep(tables: Mapping[str, Any]) -> Sweep:
         raise InputError(sentence(error, own, _File)) from None
 
 
-def _point(base: Mapping[str, Any], sweep: Sweep, row: tuple[Any, ...]) -> Point:
+def point_at(base: Mapping[str, Any], sweep: Sweep, row: tuple[Any, ...]) -> Point:
     """The point with these values of the axes. InputError for a key that leads nowhere."""
     values = {key: row[number] for number, axis in enumerate(sweep.axes) for key in axis.names()}
     tables = _tables_at_point(base, sweep, row)
@@ -128,7 +128,7 @@ def _refuse_bad_axes(
         for name, value in _extremes(axis):
             if any(row[number] == value for row in good):
                 continue
-            tried = [_point(base, sweep, (*row[:number], value, *row[number + 1 :])) for row in good]
+            tried = [point_at(base, sweep, (*row[:number], value, *row[number + 1 :])) for row in good]
             if all(point.config is None for point in tried):
                 raise InputError(f"sweep.axes[{number}].{name} = {value_text(value)}: {tried[0].reason}")
 

@@ -1,0 +1,173 @@
+"""A Gaussian process of several outputs from values and slopes: gradient-enhanced kriging.
+
+The covariance is a quadratic polynomial (a trend whose size is fitted) and a squared exponential with a length along
+each axis; its derivatives are the covariances of slopes (Solak et al., NIPS 15, 2003; Laurent et al., Arch. Comput.
+Methods Eng. 26, 2019). The outputs share lengths and noise, found by the largest likelihood, and each has a variance of
+its own. A point left out with its slopes is predicted from the same factorisation (Dubrule, Math. Geol. 15, 1983).
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve, solve_triangular
+from scipy.optimize import minimize
+
+from foundation.arrays import Floats
+
+GUESS = {"length": 3.0, "trend": 1.0, "noise": 1e-6, "slope noise": 1e-5}
+BOUNDS = {"length": (0.3, 30.0), "trend": (1e-3, 1e3), "noise": (1e-9, 1e-2), "slope noise": (1e-9, 1e-1)}
+"""First guess of each hyperparameter, and its bounds: lengths over half a range, the others over the variance."""
+MOST_ITERATIONS = 60
+
+
+class Prediction(NamedTuple):
+    """Mean and standard deviation (q, m) of every output."""
+
+    mean: Floats
+    deviation: Floats
+
+
+class LeftOut(NamedTuple):
+    """Values (n, m) less their predictions without the point, and the standard deviations of those predictions."""
+
+    error: Floats
+    deviation: Floats
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Hyperparameters. lengths : (d,); trend, noise, slope_noise : variances over that of the output."""
+
+    lengths: Floats
+    trend: float
+    noise: float
+    slope_noise: float
+
+    @classmethod
+    def of(cls, logs: Floats) -> "Scales":
+        """From their logarithms (d + 3,)."""
+        *lengths, trend, noise, slope_noise = np.exp(logs)
+        return cls(np.array(lengths), float(trend), float(noise), float(slope_noise))
+
+    @property
+    def logs(self) -> Floats:
+        """Their logarithms (d + 3,)."""
+        return np.log([*self.lengths, self.trend, self.noise, self.slope_noise])
+
+
+class GradientProcess:
+    """The process through values (n, m) and slopes (n, d, m), None without, at places (n, d).
+
+    scales : hyperparameters where they are known; else they are fitted, from start where that is given.
+    """
+
+    def __init__(
+        self,
+        places: Floats,
+        values: Floats,
+        slopes: Floats | None,
+        scales: Scales | None = None,
+        start: Scales | None = None,
+    ) -> None:
+        self.places, self.with_slopes = places, slopes is not None
+        self._middle = values.mean(axis=0)
+        count, axes = places.shape
+        self._data = values - self._middle
+        if slopes is not None:
+            self._data = np.vstack([self._data, slopes.transpose(1, 0, 2).reshape(axes * count, -1)])
+        self._is_slope = np.arange(len(self._data)) >= count
+        self.scales = scales if scales is not None else self._fitted(start)
+        self._factor = cho_factor(self._covariance(self.scales), lower=True)
+        self._weights = cho_solve(self._factor, self._data)
+        self.variances = np.maximum((self._data * self._weights).sum(axis=0) / len(self._data), 1e-30)
+
+    def predict(self, places: Floats) -> Prediction:
+        """Mean and deviation at places (q, d)."""
+        across = cross_covariance(places, self.places, self.scales, False, self.with_slopes)
+        solved = solve_triangular(self._factor[0], across.T, lower=True)
+        known = np.einsum("ij,ij->j", solved, solved)
+        share = np.maximum(self._own_variance(places) - known, 0.0)
+        return Prediction(self._middle + across @ self._weights, np.sqrt(share[:, None] * self.variances))
+
+    def mean(self, places: Floats) -> Floats:
+        """Mean (q, m) alone at places (q, d)."""
+        across = cross_covariance(places, self.places, self.scales, False, self.with_slopes)
+        return np.asarray(self._middle + across @ self._weights)
+
+    def mean_slopes(self, places: Floats) -> Floats:
+        """Derivatives (q, d, m) of the mean by the place, at places (q, d)."""
+        across = cross_covariance(places, self.places, self.scales, True, self.with_slopes)
+        rows = (across @ self._weights)[len(places) :]
+        return rows.reshape(places.shape[1], len(places), -1).transpose(1, 0, 2)
+
+    def left_out(self) -> LeftOut:
+        """Each point predicted from all others, its slopes left out with it."""
+        inverse, count = cho_solve(self._factor, np.eye(len(self._data))), len(self.places)
+        errors, shares = [], []
+        for point in range(count):
+            block = np.arange(point, len(self._data), count)
+            covariance = np.linalg.inv(inverse[np.ix_(block, block)])
+            errors.append((covariance @ self._weights[block])[0])
+            shares.append(covariance[0, 0] - self.scales.noise)
+        spread = np.sqrt(np.maximum(shares, 0.0))[:, None] * np.sqrt(self.variances)
+        return LeftOut(np.array(errors), spread)
+
+    def _own_variance(self, places: Floats) -> Floats:
+        """Variance (q,) of the values before any data, over that of the output."""
+        return 1.0 + self.scales.trend * (1.0 + (places**2).sum(axis=1)) ** 2
+
+    def _covariance(self, scales: Scales) -> Floats:
+        """Covariance of the data with noise, over the variance of the output."""
+        found = cross_covariance(self.places, self.places, scales, self.with_slopes, self.with_slopes)
+        noise = np.where(self._is_slope, scales.slope_noise, scales.noise)
+        found[np.diag_indices_from(found)] += noise + 1e-10 * found.diagonal()
+        return found
+
+    def _fitted(self, start: Scales | None) -> Scales:
+        """Hyperparameters of the largest likelihood."""
+        axes = self.places.shape[1]
+        names = [*["length"] * axes, "trend", "noise", "slope noise"]
+        bounds = np.log([BOUNDS[name] for name in names])
+        first = np.log([GUESS[name] for name in names]) if start is None else start.logs
+        options = {"maxiter": MOST_ITERATIONS, "maxfun": 100 * MOST_ITERATIONS}
+        found = minimize(self._unlikelihood, first, method="L-BFGS-B", bounds=bounds, options=options)
+        return Scales.of(np.clip(found.x, *bounds.T))
+
+    def _unlikelihood(self, logs: Floats) -> float:
+        """Negative logarithm of the likelihood over the number of data, the variances profiled out."""
+        try:
+            factor = cho_factor(self._covariance(Scales.of(logs)), lower=True)
+        except np.linalg.LinAlgError:
+            return 1e6
+        variances = (self._data * cho_solve(factor, self._data)).sum(axis=0) / len(self._data)
+        volume = 2.0 * np.log(factor[0].diagonal()).mean()
+        return float(0.5 * (volume + np.log(np.maximum(variances, 1e-30)).mean()))
+
+
+def cross_covariance(
+    places: Floats, others: Floats, scales: Scales, slopes: bool, other_slopes: bool
+) -> Floats:
+    """Covariance of values at places (q, d), followed by slopes along each axis, with those at others (n, d).
+
+    Over the variance of the output; shape (q or q (1 + d), n or n (1 + d)).
+    """
+    apart = places[:, None, :] - others[None, :, :]
+    inverse = scales.lengths**-2.0
+    smooth = np.exp(-0.5 * (apart**2 @ inverse))
+    inner = 1.0 + places @ others.T
+    bent = apart * inverse  # over the length twice: the slope of the exponent
+    rows = [[smooth + scales.trend * inner**2]]
+    axes = range(places.shape[1])
+    if other_slopes:
+        rows[0] += [smooth * bent[..., j] + 2.0 * scales.trend * inner * places[:, [j]] for j in axes]
+    if slopes:
+        rows += [[-smooth * bent[..., i] + 2.0 * scales.trend * inner * others[:, i]] for i in axes]
+    if slopes and other_slopes:
+        for i in axes:
+            for j in axes:
+                same = float(i == j)
+                curved = smooth * (same * inverse[i] - bent[..., i] * bent[..., j])
+                trend = 2.0 * (places[:, [j]] * others[:, i] + same * inner)
+                rows[1 + i].append(curved + scales.trend * trend)
+    return np.block(rows)
