@@ -22,10 +22,11 @@ MOST_ITERATIONS = 60
 
 
 class Prediction(NamedTuple):
-    """Mean and standard deviation (q, m) of every output."""
+    """Mean and standard deviation (q, m) of every output, and slopes (q, d, m) of the mean by the place."""
 
     mean: Floats
     deviation: Floats
+    slopes: Floats
 
 
 class LeftOut(NamedTuple):
@@ -83,23 +84,27 @@ class GradientProcess:
         self.variances = np.maximum((self._data * self._weights).sum(axis=0) / len(self._data), 1e-30)
 
     def predict(self, places: Floats) -> Prediction:
-        """Mean and deviation at places (q, d)."""
-        across = cross_covariance(places, self.places, self.scales, False, self.with_slopes)
-        solved = solve_triangular(self._factor[0], across.T, lower=True)
-        known = np.einsum("ij,ij->j", solved, solved)
-        share = np.maximum(self._own_variance(places) - known, 0.0)
-        return Prediction(self._middle + across @ self._weights, np.sqrt(share[:, None] * self.variances))
+        """Mean, deviation and slopes of the mean at places (q, d)."""
+        count = len(places)
+        across = cross_covariance(places, self.places, self.scales, True, self.with_slopes)
+        mean = across @ self._weights
+        slopes = mean[count:].reshape(places.shape[1], count, -1).transpose(1, 0, 2)
+        return Prediction(self._middle + mean[:count], self._deviation(places, across[:count]), slopes)
 
     def mean(self, places: Floats) -> Floats:
         """Mean (q, m) alone at places (q, d)."""
         across = cross_covariance(places, self.places, self.scales, False, self.with_slopes)
         return np.asarray(self._middle + across @ self._weights)
 
-    def mean_slopes(self, places: Floats) -> Floats:
-        """Derivatives (q, d, m) of the mean by the place, at places (q, d)."""
-        across = cross_covariance(places, self.places, self.scales, True, self.with_slopes)
-        rows = (across @ self._weights)[len(places) :]
-        return rows.reshape(places.shape[1], len(places), -1).transpose(1, 0, 2)
+    def deviation(self, places: Floats) -> Floats:
+        """Standard deviation (q, m) alone at places (q, d)."""
+        return self._deviation(places, cross_covariance(places, self.places, self.scales, False, self.with_slopes))
+
+    def _deviation(self, places: Floats, across: Floats) -> Floats:
+        """Standard deviation (q, m) from the covariance (q, n) with the data."""
+        solved = solve_triangular(self._factor[0], across.T, lower=True)
+        share = np.maximum(self._own_variance(places) - np.einsum("ij,ij->j", solved, solved), 0.0)
+        return np.asarray(np.sqrt(share[:, None] * self.variances))
 
     def left_out(self) -> LeftOut:
         """Each point predicted from all others, its slopes left out with it."""
@@ -145,29 +150,27 @@ class GradientProcess:
         return float(0.5 * (volume + np.log(np.maximum(variances, 1e-30)).mean()))
 
 
-def cross_covariance(
-    places: Floats, others: Floats, scales: Scales, slopes: bool, other_slopes: bool
-) -> Floats:
+def cross_covariance(places: Floats, others: Floats, scales: Scales, slopes: bool, other_slopes: bool) -> Floats:
     """Covariance of values at places (q, d), followed by slopes along each axis, with those at others (n, d).
 
-    Over the variance of the output; shape (q or q (1 + d), n or n (1 + d)).
+    Over the variance of the output; shape (q or (1 + d) q, n or (1 + d) n).
     """
-    apart = places[:, None, :] - others[None, :, :]
+    (count, axes), (other_count, _) = places.shape, others.shape
     inverse = scales.lengths**-2.0
-    smooth = np.exp(-0.5 * (apart**2 @ inverse))
+    bent = ((places[:, None] - others[None]) * inverse).transpose(2, 0, 1)  # (d, q, n): less the slope of the exponent
+    smooth = np.exp(-0.5 * np.einsum("dqn,dqn,d->qn", bent, bent, scales.lengths**2))
     inner = 1.0 + places @ others.T
-    bent = apart * inverse  # over the length twice: the slope of the exponent
-    rows = [[smooth + scales.trend * inner**2]]
-    axes = range(places.shape[1])
+    found = np.empty((1 + axes * slopes, count, 1 + axes * other_slopes, other_count))
+    found[0, :, 0] = smooth + scales.trend * inner**2
+    rising = 2.0 * scales.trend * inner
     if other_slopes:
-        rows[0] += [smooth * bent[..., j] + 2.0 * scales.trend * inner * places[:, [j]] for j in axes]
+        found[0, :, 1:] = (smooth * bent + rising * places.T[:, :, None]).transpose(1, 0, 2)
     if slopes:
-        rows += [[-smooth * bent[..., i] + 2.0 * scales.trend * inner * others[:, i]] for i in axes]
+        found[1:, :, 0] = rising * others.T[:, None, :] - smooth * bent
     if slopes and other_slopes:
-        for i in axes:
-            for j in axes:
-                same = float(i == j)
-                curved = smooth * (same * inverse[i] - bent[..., i] * bent[..., j])
-                trend = 2.0 * (places[:, [j]] * others[:, i] + same * inner)
-                rows[1 + i].append(curved + scales.trend * trend)
-    return np.block(rows)
+        both = found[1:, :, 1:]
+        both[:] = -(smooth * bent)[:, :, None] * bent.transpose(1, 0, 2)[None]
+        both += 2.0 * scales.trend * others.T[:, None, None, :] * places[None, :, :, None]
+        for axis in range(axes):
+            both[axis, :, axis] += smooth * inverse[axis] + rising
+    return found.reshape(found.shape[0] * count, -1)

@@ -12,6 +12,11 @@ LEVEL = 0.95
 """Share of designs whose press is to be within the interval."""
 LARGEST_LOG_RATIO = 1e3
 """Largest over least value of a step whose logarithm is taken."""
+LEAST_SHARE = 0.5
+"""Deviation that is added everywhere, over the median of that of presses left out: near a press an error remains, of the
+contact that moves over the mesh from node to node, which is no matter of the distance."""
+MOST_AT_ONCE = 2048
+"""Designs that are answered at once, so that they fit into memory."""
 STEADY = 1e-10
 """Relative difference below which a step is the same for all designs."""
 
@@ -80,7 +85,7 @@ class Quantity:
         self.forms = Forms.of(values)
         self._moving = np.flatnonzero(~self.forms.steady)
         self.process: GradientProcess | None = None
-        self.scores = np.zeros((0, 0))
+        self.scores, self.floor = np.zeros((0, 0)), np.zeros(0)
         if len(self._moving):
             modelled = self.forms.modelled(values)[:, self._moving]
             sloped = None
@@ -88,19 +93,24 @@ class Quantity:
                 sloped = self.forms.modelled_slopes(values, slopes)[:, :, self._moving]
             self.process = GradientProcess(places, modelled, sloped, scales, start)
             left = self.process.left_out()
+            self.floor = LEAST_SHARE * np.median(left.deviation, axis=0)
             self.left_out_errors = left.error
-            self.scores = np.abs(left.error) / np.maximum(left.deviation, 1e-12)
+            self.scores = np.abs(left.error) / np.maximum(left.deviation + self.floor, 1e-12)
         self.factor = conformal_factor(self.scores)
 
     def course(self, places: Floats) -> QuantityCourse:
         """Value, interval and slopes at places (q, d)."""
+        parts = [self._course(places[start : start + MOST_AT_ONCE]) for start in range(0, len(places), MOST_AT_ONCE)]
+        return parts[0] if len(parts) == 1 else QuantityCourse(*map(np.concatenate, zip(*parts, strict=True)))
+
+    def _course(self, places: Floats) -> QuantityCourse:
         steps = self.values.shape[1]
         modelled = np.repeat(self.forms.modelled(self.values[:1]), len(places), axis=0)
         spread, slopes = np.zeros((len(places), steps)), np.zeros((len(places), places.shape[1], steps))
         if self.process is not None:
-            mean, deviation = self.process.predict(places)
-            modelled[:, self._moving], spread[:, self._moving] = mean, self.factor * deviation
-            slopes[:, :, self._moving] = self.process.mean_slopes(places)
+            found = self.process.predict(places)
+            modelled[:, self._moving], slopes[:, :, self._moving] = found.mean, found.slopes
+            spread[:, self._moving] = self.factor * (found.deviation + self.floor)
         value = self.forms.value(modelled)
         ends = [self.forms.value(modelled - spread), self.forms.value(modelled + spread)]
         over = np.where(self.forms.sign != 0.0, value, self.forms.size)
@@ -114,10 +124,10 @@ class Quantity:
         return self.forms.value(modelled)
 
     def relative_deviation(self, places: Floats) -> Floats:
-        """Standard deviation (q,) of the last step, over its value or its size; not yet times factor."""
+        """Deviation (q,) of the last step, over its value or its size; not yet times factor."""
         if self.process is None or self.forms.steady[-1]:
             return np.zeros(len(places))
-        return self.process.predict(places).deviation[:, -1]
+        return np.asarray(self.process.deviation(places)[:, -1] + self.floor[-1])
 
     def relative_errors(self, places: Floats, values: Floats) -> Floats:
         """Errors (q, s) of the value at places (q, d), over the values (q, s) of presses; 0 where those are zero."""

@@ -40,7 +40,7 @@ def write_page(path: Path, family: Family, summary: Mapping[str, Any]) -> None:
         number=number,
         labels=LABELS,
         indices=indices,
-        keys=family.keys,
+        keys=[one.name for one in family.space.ranges],
         presses=_press_rows(family),
         front=[[*map(number, values[row]), *(number(float(answers[name][row])) for name in LABELS)] for row in shown],
         curves=_data(_curves_figure(family)),
