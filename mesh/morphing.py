@@ -47,7 +47,9 @@ def _moved_in_plane(places: Floats, before: StackOutline, after: StackOutline) -
         return np.asarray(np.sign(shares) * moved * sides[1])
     out = np.abs(shares).max(axis=1)  # 0 on the axis, 1 at the sides, along the ray of each node
     ray = shares / np.where(out > 0.0, out, 1.0)[:, None]
-    rims = [foot[0] / np.maximum(np.hypot(*(ray * side).T), LEAST_SHARE) for foot, side in zip(feet, sides, strict=True)]
+    rims = [
+        foot[0] / np.maximum(np.hypot(*(ray * side).T), LEAST_SHARE) for foot, side in zip(feet, sides, strict=True)
+    ]
     return np.asarray(_beyond_foot(out, *rims)[:, None] * ray * sides[1])
 
 
@@ -78,7 +80,10 @@ def _dome_stretch(share: Floats, before: StackOutline, after: StackOutline) -> F
 
     A cap of foot a and sphere R is a^2 (1 - s^2) / (sqrt(R^2 - s^2 a^2) + R - h) high at the share s.
     """
-    if (before.effector_half_x, before.top - before.medium1_top) == (after.effector_half_x, after.top - after.medium1_top):
+    if (before.effector_half_x, before.top - before.medium1_top) == (
+        after.effector_half_x,
+        after.top - after.medium1_top,
+    ):
         return np.ones(len(share))
     foot = [one.effector_half_x for one in (before, after)]
     below = []

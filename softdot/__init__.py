@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Case", "Config", "ConvergenceWarning", "InputError", "MeshingError", "Pressed", "ResultWarning", "Verdict",
-    "__version__", "config_hash", "config_schema", "derivatives", "diagnose", "load_config", "load_family", "run_config",
-    "sweep",
+    "__version__", "config_hash", "config_schema", "derivatives", "diagnose", "load_config", "load_family",
+    "run_config", "sweep",
 ]  # fmt: skip
 refuse_foreign_packages()
 

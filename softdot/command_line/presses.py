@@ -54,9 +54,7 @@ def add_family(commands: Any) -> None:
         "--accuracy", type=percent, nargs=2, default=(1.0, 1.5), metavar=("FORCE", "VOLTAGE"),
         help="errors in percent that 95 %% of the designs stay below; default: 1 1.5",
     )  # fmt: skip
-    family.add_argument(
-        "--presses", type=count_of_presses, default=80, metavar="N", help="most presses; default: 80"
-    )
+    family.add_argument("--presses", type=count_of_presses, default=80, metavar="N", help="most presses; default: 80")
     add_set(family)
     add_scheduler(family)
     add_output(family)

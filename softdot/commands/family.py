@@ -37,7 +37,8 @@ def short_text(summary: dict[str, Any], output: str) -> str:
     shown = "shown by presses that took no part" if summary["reached"] else "not shown to be what was asked"
     lines = [
         f"{pressed['solved']} presses, {pressed['from_cache']} of them from the cache, in {summary['seconds']:.0f} s",
-        f"95 % of the designs within {expected[FORCE]:.2g} % in force and {expected[VOLTAGE]:.2g} % in voltage, {shown}",
+        f"95 % of the designs within {expected[FORCE]:.2g} % in force and {expected[VOLTAGE]:.2g} % in voltage,"
+        f" {shown}",
     ]
     if error is not None:
         lines.append(f"the mesh is off by about {error[FORCE]:.2g} % in force and {error[VOLTAGE]:.2g} % in voltage")

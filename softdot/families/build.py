@@ -11,9 +11,8 @@ from scipy.stats import qmc
 
 from foundation.arrays import Floats
 from foundation.cache import check_cache_folder
-from foundation.errors import InputError
 from foundation.executor import Executor
-from mesh.types import MeshingError, TetMesh
+from mesh.types import TetMesh
 from softdot.executors import executor_for
 from softdot.families.family import Family, Region
 from softdot.families.fit import FORCE, JUDGED, VOLTAGE, expected_error, fit_quantities, held_out_row, next_places
@@ -95,9 +94,7 @@ def _state_sizes(space: FamilySpace) -> None:
     del space.__dict__["centre"]
 
 
-def make_family(
-    space: FamilySpace, tet_mesh: TetMesh, asked: Asked, executor: Executor, progress: Progress
-) -> Family:
+def make_family(space: FamilySpace, tet_mesh: TetMesh, asked: Asked, executor: Executor, progress: Progress) -> Family:
     """The family itself, without files. FamilyFailedError."""
     presses = FamilyPresses(space, tet_mesh, executor, progress, asked.most)
     progress.stage("press")
@@ -123,7 +120,7 @@ def make_family(
 
 
 def _start(space: FamilySpace, presses: FamilyPresses, asked: Asked) -> list[Floats]:
-    """The first places: the middle, and designs that fill the space, without those near designs that cannot be built."""
+    """The first places: the middle, and designs that fill the space, without those near one that cannot be built."""
     count = space.count + 3
     sampler = qmc.LatinHypercube(space.count, seed=np.random.default_rng(asked.seed), optimization="random-cd")
     return [np.zeros(space.count), *presses.possible(2.0 * sampler.random(count) - 1.0)]
@@ -151,8 +148,10 @@ def _refine(
             checks = candidates[random.choice(len(candidates), min(CHECKS, room, len(candidates)), replace=False)]
             solved = presses.press(list(checks), joins=False)
             rows = [_row(space, quantities, place, record) for place, record in solved]
-            reached = good and bool(rows) and all(
-                row[name]["error_percent"] <= 100.0 * asked.accuracy[name] for row in rows for name in JUDGED
+            reached = (
+                good
+                and bool(rows)
+                and all(row[name]["error_percent"] <= 100.0 * asked.accuracy[name] for row in rows for name in JUDGED)
             )
             presses.join(solved)
         else:

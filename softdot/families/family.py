@@ -134,10 +134,7 @@ class Family:
             }
         return FamilyCourse(
             {name: course.value.reshape(*shape, -1) for name, course in found.items()},
-            {
-                name: (course.low.reshape(*shape, -1), course.high.reshape(*shape, -1))
-                for name, course in found.items()
-            },
+            {name: (course.low.reshape(*shape, -1), course.high.reshape(*shape, -1)) for name, course in found.items()},
             slopes,
         )
 

@@ -41,7 +41,9 @@ def expected_error(quantity: Quantity, places: Floats) -> float:
     return float(np.quantile(np.outer(spread, quantity.scores[:, -1]), LEVEL))
 
 
-def next_places(quantities: Mapping[str, Quantity], asked: Mapping[str, float], candidates: Floats, count: int) -> Floats:
+def next_places(
+    quantities: Mapping[str, Quantity], asked: Mapping[str, float], candidates: Floats, count: int
+) -> Floats:
     """The candidates (count, d) at which the deviations over the asked accuracies are largest.
 
     After each the process takes its own prediction for a press there, so that the next one is elsewhere.

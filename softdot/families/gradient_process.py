@@ -120,7 +120,7 @@ class GradientProcess:
 
     def _own_variance(self, places: Floats) -> Floats:
         """Variance (q,) of the values before any data, over that of the output."""
-        return 1.0 + self.scales.trend * (1.0 + (places**2).sum(axis=1)) ** 2
+        return np.asarray(1.0 + self.scales.trend * (1.0 + (places**2).sum(axis=1)) ** 2)
 
     def _covariance(self, scales: Scales) -> Floats:
         """Covariance of the data with noise, over the variance of the output."""

@@ -41,7 +41,8 @@ def common_mesh(space: FamilySpace) -> TetMesh:
 class FamilyPresses:
     """The presses so far. places, records : of those that were solved; refused, reasons : of designs without one.
 
-    buildable : places that were looked at and can be built. pressed, recalled : numbers of presses by this command and by earlier ones.
+    buildable : places that were looked at and can be built. pressed, recalled : numbers of presses by this command and
+    by earlier ones.
     """
 
     space: FamilySpace
@@ -127,7 +128,7 @@ class FamilyPresses:
         return np.vstack([pressed, np.array(self.buildable)[near]])
 
     def possible(self, places: Floats) -> Floats:
-        """Those of the places (n, d) that are nearer to a design that was pressed, or can be, than to one that cannot."""
+        """Those of the places (n, d) that are nearer to a design that was pressed, or can be, than to another."""
         known = [*self.places, *self.buildable]
         if not self.refused or not known:
             return places

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from foundation.arrays import Floats
 from softdot.families.gradient_process import GradientProcess, Scales
@@ -13,12 +14,14 @@ LEVEL = 0.95
 LARGEST_LOG_RATIO = 1e3
 """Largest over least value of a step whose logarithm is taken."""
 LEAST_SHARE = 0.5
-"""Deviation that is added everywhere, over the median of that of presses left out: near a press an error remains, of the
-contact that moves over the mesh from node to node, which is no matter of the distance."""
+"""Deviation that is added everywhere, over the median of that of presses left out: an error of the contact, which moves
+over the mesh from node to node, remains near a press too (as in the conformal regression of Papadopoulos, Vovk and
+Gammerman, J. Artif. Intell. Res. 40, 2011).
+"""
 MOST_AT_ONCE = 2048
 """Designs that are answered at once, so that they fit into memory."""
 STEADY = 1e-10
-"""Relative difference below which a step is the same for all designs."""
+"""Relative difference up to which a step is the same for all designs."""
 
 
 class QuantityCourse(NamedTuple):
@@ -33,12 +36,12 @@ class QuantityCourse(NamedTuple):
 @dataclass(frozen=True)
 class Forms:
     """How each step (s,) is modelled. sign : of its logarithm, 0 where it is not taken; size : unit of a plain step;
-    steady : the same for all designs.
+    moving : not the same for all designs.
     """
 
     sign: Floats
     size: Floats
-    steady: Floats
+    moving: NDArray[np.bool_]
 
     @classmethod
     def of(cls, values: Floats) -> "Forms":
@@ -46,9 +49,11 @@ class Forms:
         size = np.abs(values).max(axis=0)
         least = np.abs(values).min(axis=0)
         one_sign = (np.sign(values) == np.sign(values[0])).all(axis=0) & (least > 0.0)
-        sign = np.where(one_sign & (size < LARGEST_LOG_RATIO * np.where(least > 0.0, least, 1.0)), np.sign(values[0]), 0.0)
-        steady = np.ptp(values, axis=0) <= STEADY * size
-        return cls(sign, np.where(size > 0.0, size, 1.0), steady)
+        sign = np.where(
+            one_sign & (size < LARGEST_LOG_RATIO * np.where(least > 0.0, least, 1.0)), np.sign(values[0]), 0.0
+        )
+        moving = np.ptp(values, axis=0) > STEADY * size
+        return cls(sign, np.where(size > 0.0, size, 1.0), moving)
 
     def modelled(self, values: Floats) -> Floats:
         """What is modelled of values (n, s)."""
@@ -83,7 +88,7 @@ class Quantity:
     ) -> None:
         self.places, self.values, self.slopes = places, values, slopes
         self.forms = Forms.of(values)
-        self._moving = np.flatnonzero(~self.forms.steady)
+        self._moving = np.flatnonzero(self.forms.moving)
         self.process: GradientProcess | None = None
         self.scores, self.floor = np.zeros((0, 0)), np.zeros(0)
         if len(self._moving):
@@ -125,7 +130,7 @@ class Quantity:
 
     def relative_deviation(self, places: Floats) -> Floats:
         """Deviation (q,) of the last step, over its value or its size; not yet times factor."""
-        if self.process is None or self.forms.steady[-1]:
+        if self.process is None or not self.forms.moving[-1]:
             return np.zeros(len(places))
         return np.asarray(self.process.deviation(places)[:, -1] + self.floor[-1])
 

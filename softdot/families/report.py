@@ -116,7 +116,9 @@ def _curves_figure(family: Family) -> "Figure":
         shown = family.region.holds(places)
         for line, name in enumerate(LABELS):
             cell, course = cells[line][axis], family.quantities[name].course(places)
-            low, value, high = (np.where(shown, part[:, -1], np.nan) for part in (course.low, course.value, course.high))
+            low, value, high = (
+                np.where(shown, part[:, -1], np.nan) for part in (course.low, course.value, course.high)
+            )
             cell.fill_between(one.values(along), low, high, color=COLOURS[name], alpha=0.25, lw=0)
             cell.plot(one.values(along), value, color=COLOURS[name], lw=1.6)
             cell.grid(alpha=0.3)
@@ -153,7 +155,9 @@ def _press_rows(family: Family) -> list[list[str]]:
     ranges = family.space.ranges
     values = np.column_stack([one.values(column) for one, column in zip(ranges, family.places.T, strict=True)])
     last = [family.quantities[name].values[:, -1] for name in LABELS]
-    return [[number(float(cell)) for cell in (*row, *ends)] for row, ends in zip(values, np.transpose(last), strict=True)]
+    return [
+        [number(float(cell)) for cell in (*row, *ends)] for row, ends in zip(values, np.transpose(last), strict=True)
+    ]
 
 
 def _held_rows(summary: Mapping[str, Any]) -> list[list[str]]:

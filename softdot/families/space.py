@@ -47,7 +47,7 @@ class Range:
 
     @property
     def is_log(self) -> bool:
-        """Whether places are even in the logarithm of the value: where it is positive, so that laws of powers are lines."""
+        """Whether places are even in the logarithm of the value: where it is positive, laws of powers are lines."""
         return self.low > 0.0
 
     def places(self, values: Floats) -> Floats:
@@ -168,7 +168,9 @@ def _range(number: int, axis: Axis) -> Range:
         )
     for key in keys:
         if key_path(key)[0] in NUMERICAL or key == "press.load_steps":
-            raise InputError(f"sweep.axes[{number}]: {key} is no number of a design; a family has one mesh and one course")
+            raise InputError(
+                f"sweep.axes[{number}]: {key} is no number of a design; a family has one mesh and one course"
+            )
     return Range(keys, float(axis.low), float(axis.high), axis.scale)
 
 
@@ -187,5 +189,8 @@ def _parts(config: Config) -> Any:
 
 def corners(count: int) -> list[Floats]:
     """Places of the ends of every axis alone, and the middle of all."""
-    ends = [np.zeros(count), *(sign * np.eye(count)[axis] for axis, sign in itertools.product(range(count), (-1.0, 1.0)))]
+    ends = [
+        np.zeros(count),
+        *(sign * np.eye(count)[axis] for axis, sign in itertools.product(range(count), (-1.0, 1.0))),
+    ]
     return [np.asarray(one) for one in ends]
