@@ -35,6 +35,9 @@ def add_sweep(commands: Any) -> None:
         epilog="examples/ has a SPACE.toml to start from. " + EXIT_STATUS,
     )
     sweep.add_argument("space", metavar="SPACE.toml", help="a configuration and its axes")
+    sweep.add_argument(
+        "--family", metavar="FAM", help="answer the points by this folder of softdot family instead of presses"
+    )
     add_set(sweep)
     add_scheduler(sweep)
     add_output(sweep)

@@ -16,9 +16,10 @@ from mesh.types import TetMesh
 from softdot.executors import executor_for
 from softdot.families.family import Family, Region
 from softdot.families.fit import FORCE, JUDGED, VOLTAGE, expected_error, fit_quantities, held_out_row, next_places
-from softdot.families.folder import FAMILY, write_family
+from softdot.families.folder import FAMILY, PAGE, write_family
 from softdot.families.presses import FamilyPresses, common_mesh, region, remeshed_warnings
 from softdot.families.quantity import Quantity
+from softdot.families.report import write_page
 from softdot.families.space import FamilySpace
 from softdot.hardware import hardware
 from softdot.output import staged_folder
@@ -80,7 +81,9 @@ def build_family(
             family.facts["workers"] = executor.places
         family.facts |= {"scheduler": scheduler, "seconds": time.perf_counter() - begun, "hardware": hardware()}
         told.stage("report")
-        return write_family(family, folder)
+        summary = write_family(family, folder)
+        write_page(folder / PAGE, family, summary)
+    return summary
 
 
 def _state_sizes(space: FamilySpace) -> None:

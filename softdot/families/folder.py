@@ -23,9 +23,7 @@ FAMILY = Product("softdot-family/1", "family.json", frozenset({"family.json", AR
 
 
 def write_family(family: Family, folder: Path) -> dict[str, Any]:
-    """Write a family into an empty folder and return the content of family.json."""
-    from softdot.families.report import write_page
-
+    """Write what a family answers from into an empty folder and return the content of family.json."""
     buffer = BytesIO()
     np.savez_compressed(buffer, **_arrays(family))
     content = buffer.getvalue()
@@ -42,7 +40,6 @@ def write_family(family: Family, folder: Path) -> dict[str, Any]:
         "space": family.space.tables,
         "sha256_of_arrays": hashlib.sha256(content).hexdigest(),
     })  # fmt: skip
-    write_page(folder / PAGE, family, summary)
     write_json(folder / FAMILY.summary, summary)
     return summary
 

@@ -51,9 +51,10 @@ class Range:
         return self.low > 0.0
 
     def places(self, values: Floats) -> Floats:
-        """Places of values (...), -1 at the low end and 1 at the high one."""
+        """Places of values (...), -1 at the low end and 1 at the high one; not finite where there is no logarithm."""
         low, high = (np.log(self.low), np.log(self.high)) if self.is_log else (self.low, self.high)
-        at = np.log(values) if self.is_log else values
+        with np.errstate(divide="ignore", invalid="ignore"):
+            at = np.log(values) if self.is_log else values
         return np.asarray(2.0 * (at - low) / (high - low) - 1.0)
 
     def values(self, places: Floats) -> Floats:

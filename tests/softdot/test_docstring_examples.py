@@ -24,6 +24,7 @@ SHOWN_ELSEWHERE = {
     "MeshingError",
     "__version__",
     "diagnose",
+    "load_family",
     "sweep",
     "run_config",
     "Verdict",

@@ -7,7 +7,7 @@ import pytest
 
 import solve.solution.march
 from geometry.dot_at_rest import resolve_dot
-from geometry.parameters import Dot
+from geometry.parameters import Dot, Effector
 from mesh.build import build
 from mesh.options import MeshOptions
 from solve.mechanisms import Mechanism, with_mechanisms
@@ -58,6 +58,10 @@ CASES = {
     ),
     "thickness of a medium": (0.5, lambda p: thickness(model(), "medium1", "thickness_mm", p)),
     "thickness of the film": (28.0, lambda p: thickness(model(), "film", "thickness_um", p)),
+    "length of a foot": (
+        1.6,
+        lambda p: with_segment(model(), effector=Effector(shape="block", length_mm=p, width_mm=1.6, height_mm=1.0)),
+    ),
     "side stiffness": (5.0, lambda p: with_segment(model(), boundary="elastic", side_stiffness_N_per_mm3=p)),
     "bond stiffness": (
         10.0,
