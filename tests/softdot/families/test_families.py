@@ -8,6 +8,7 @@ import pytest
 from foundation.errors import InputError
 from foundation.executor import HERE
 from softdot.cli import main
+from softdot.families import presses
 from softdot.families.build import Asked, make_family
 from softdot.families.family import Family, Region
 from softdot.families.fit import JUDGED
@@ -158,7 +159,7 @@ def test_a_family_is_kept_whole_or_refused(family, tmp_path):
         ({"key": "segment.medium1.thick_mm", "low": 0.4, "high": 0.5}, "thick_mm"),
     ],
 )
-def test_a_family_of_anything_but_numbers_of_a_design_is_refused(axis, told, tmp_path, capsys):
+def test_a_family_of_anything_but_numbers_of_a_design_is_refused(axis, told, tmp_path):
     with pytest.raises(InputError, match=told):
         FamilySpace(space_of(axis))
     assert main(["family", str(tmp_path / "none.toml"), "-o", str(tmp_path / "out")]) == 2
@@ -167,7 +168,9 @@ def test_a_family_of_anything_but_numbers_of_a_design_is_refused(axis, told, tmp
 
 @pytest.mark.press
 def test_a_family_of_presses_answers_a_press_that_it_has_not_seen(tmp_path, monkeypatch):
-    monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
+    kept = {}
+    monkeypatch.setattr(presses, "recall", kept.get)
+    monkeypatch.setattr(presses, "remember", kept.__setitem__)
     space = FamilySpace(space_of(THICKNESS, DEPTH))
     tet_mesh = common_mesh(space)
     asked = Asked(dict.fromkeys(JUDGED, 0.05), most=16)

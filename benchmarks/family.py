@@ -1,0 +1,113 @@
+"""A family beside full presses that it has not seen: python -m benchmarks.family FAM [DESIGNS].
+
+FAM : folder of softdot family. DESIGNS : 200 if not given, drawn from the space, each pressed in full on the mesh of
+the family moved to it, and kept in FAM-unseen.json, so that a stopped run goes on. Errors are at full load. Beside it,
+from the same presses: the same process without derivatives, and quadratic response surfaces in the logarithms with and
+without them.
+"""
+
+import json
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from foundation.arrays import Floats
+from softdot.executors import executor_for
+from softdot.families.family import Family
+from softdot.families.fit import JUDGED
+from softdot.families.folder import load_family
+from softdot.families.member import Member, press_member
+from softdot.families.presses import common_mesh
+from softdot.families.quantity import Quantity
+from softdot.sweeps.points import SOLVED, records_as_completed
+
+SEED, ANSWERS, AT_ONCE = 4711, 50, 20_000
+
+
+def unseen(family: Family, count: int, path: Path) -> tuple[Floats, dict[str, Floats]]:
+    """Places (n, d) of drawn designs, and what their presses give at the load steps, (n, s) by quantity."""
+    rows = json.loads(path.read_text("utf-8")) if path.exists() else {}
+    space, mesh = family.space, common_mesh(family.space)
+    places = space.drawn_places(count, SEED)
+    members = {
+        str(number): (Member(tuple(place), space.config_at(place), ()), space.centre, mesh)
+        for number, place in enumerate(places)
+        if str(number) not in rows and family.region.holds(place[None])[0]
+    }
+    with executor_for() as executor:
+        for name, record in records_as_completed(executor, press_member, members):
+            rows[name] = {key: record.get(key) for key in ("status", "reason", "seconds", "courses")}
+            path.write_text(json.dumps(rows), "utf-8")
+    good = sorted(int(name) for name, row in rows.items() if row["status"] == SOLVED and int(name) < count)
+    return places[good], {name: np.array([rows[str(n)]["courses"][name] for n in good]) for name in JUDGED}
+
+
+def quadratic(quantity: Quantity, with_slopes: bool) -> Callable[[Floats], Floats]:
+    """Least squares of a full quadratic polynomial of the places for the logarithm of the last step."""
+    places, sign = quantity.places, np.sign(quantity.values[0, -1])
+    axes = places.shape[1]
+
+    def basis(at: Floats) -> Floats:
+        products = [at[:, i] * at[:, j] for i in range(axes) for j in range(i, axes)]
+        return np.column_stack([np.ones(len(at)), at, *products])
+
+    def slope(at: Floats, axis: int) -> Floats:
+        step = 1e-4 * np.eye(axes)[axis]
+        return (basis(at + step) - basis(at - step)) / 2e-4  # exact for a quadratic
+
+    rows, right = [basis(places)], [np.log(np.abs(quantity.values[:, -1]))]
+    if with_slopes and quantity.slopes is not None:
+        rows += [slope(places, axis) for axis in range(axes)]
+        right += list((quantity.slopes[:, :, -1] / quantity.values[:, [-1]]).T)
+    found = np.linalg.lstsq(np.vstack(rows), np.concatenate(right), rcond=None)[0]
+    return lambda at: sign * np.exp(basis(at) @ found)
+
+
+def percent(answer: Floats, pressed: Floats) -> str:
+    """The error that 95 % of the designs stay below, and the largest."""
+    off = 100.0 * np.abs(answer - pressed) / np.abs(pressed)
+    return f"{np.quantile(off, 0.95):6.2f} % {off.max():8.2f} %"
+
+
+def compare(family: Family, places: Floats, pressed: dict[str, Floats]) -> None:
+    """Print errors of all methods, and how often the intervals hold."""
+    print(f"{len(family.places)} presses, {len(places)} unseen designs; 95 % of the errors below, and the largest")
+    for name in JUDGED:
+        quantity, last = family.quantities[name], pressed[name][:, -1]
+        course = quantity.course(places)
+        within = (course.low <= pressed[name]) & (pressed[name] <= course.high)
+        bare = Quantity(quantity.places, quantity.values, None)
+        print(f"{name}: the family                   {percent(course.value[:, -1], last)}")
+        print(f"{name}: without derivatives          {percent(bare.course_values(places)[:, -1], last)}")
+        for words, with_slopes in (("quadratic, derivatives", True), ("quadratic, none       ", False)):
+            print(f"{name}: {words}       {percent(quadratic(quantity, with_slopes)(places), last)}")
+        shares = 100.0 * within[:, 1:].mean(), 100.0 * within[:, -1].mean()
+        print(f"{name}: within the 95 % interval {shares[0]:.0f} % of all steps, {shares[1]:.0f} % at full load")
+
+
+def measure_time(family: Family) -> None:
+    """Print the processor time of an answer, and of 100,000 at once."""
+    start = time.process_time()
+    for _ in range(ANSWERS):
+        family.press()
+    print(f"{1e3 * (time.process_time() - start) / ANSWERS:.1f} ms an answer")
+    places = family.space.drawn_places(AT_ONCE, SEED)
+    places = places[family.region.holds(places)]
+    values = np.column_stack([one.values(column) for one, column in zip(family.space.ranges, places.T, strict=True)])
+    start = time.process_time()
+    family.at_values(values)
+    print(f"{1e5 * (time.process_time() - start) / len(places):.1f} s for 100,000, with derivatives and intervals")
+
+
+def main(folder: Path, count: int) -> None:
+    """Press what is missing, and print the table."""
+    family = load_family(folder)
+    compare(family, *unseen(family, count, folder.with_name(f"{folder.name}-unseen.json")))
+    measure_time(family)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 200)
