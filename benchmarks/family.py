@@ -21,7 +21,7 @@ from softdot.families.fit import JUDGED
 from softdot.families.folder import load_family
 from softdot.families.member import Member, press_member
 from softdot.families.presses import common_mesh
-from softdot.families.quantity import Quantity
+from softdot.families.quantity import FamilyQuantity
 from softdot.sweeps.points import SOLVED, records_as_completed
 
 SEED, ANSWERS, AT_ONCE = 4711, 50, 20_000
@@ -45,7 +45,7 @@ def unseen(family: Family, count: int, path: Path) -> tuple[Floats, dict[str, Fl
     return places[good], {name: np.array([rows[str(n)]["courses"][name] for n in good]) for name in JUDGED}
 
 
-def quadratic(quantity: Quantity, with_slopes: bool) -> Callable[[Floats], Floats]:
+def quadratic(quantity: FamilyQuantity, with_slopes: bool) -> Callable[[Floats], Floats]:
     """Least squares of a full quadratic polynomial of the places for the logarithm of the last step."""
     places, sign = quantity.places, np.sign(quantity.values[0, -1])
     axes = places.shape[1]
@@ -79,7 +79,7 @@ def compare(family: Family, places: Floats, pressed: dict[str, Floats]) -> None:
         quantity, last = family.quantities[name], pressed[name][:, -1]
         course = quantity.course(places)
         within = (course.low <= pressed[name]) & (pressed[name] <= course.high)
-        bare = Quantity(quantity.places, quantity.values, None)
+        bare = FamilyQuantity(quantity.places, quantity.values, None)
         print(f"{name}: the family                   {percent(course.value[:, -1], last)}")
         print(f"{name}: without derivatives          {percent(bare.course_values(places)[:, -1], last)}")
         for words, with_slopes in (("quadratic, derivatives", True), ("quadratic, none       ", False)):

@@ -18,7 +18,7 @@ from softdot.families.family import Family, Region
 from softdot.families.fit import FORCE, JUDGED, VOLTAGE, expected_error, fit_quantities, held_out_row, next_places
 from softdot.families.folder import FAMILY, PAGE, write_family
 from softdot.families.presses import FamilyPresses, common_mesh, region, remeshed_warnings
-from softdot.families.quantity import Quantity
+from softdot.families.quantity import FamilyQuantity
 from softdot.families.report import write_page
 from softdot.families.space import FamilySpace
 from softdot.hardware import hardware
@@ -131,7 +131,7 @@ def _start(space: FamilySpace, presses: FamilyPresses, asked: Asked) -> list[Flo
 
 def _refine(
     space: FamilySpace, presses: FamilyPresses, asked: Asked
-) -> tuple[dict[str, Quantity], list[dict[str, Any]], bool]:
+) -> tuple[dict[str, FamilyQuantity], list[dict[str, Any]], bool]:
     """Press on until presses that took no part are answered as asked, or most are done.
 
     The quantities of all presses, the rows of the last ones that took no part, and whether the accuracy is reached.
@@ -165,13 +165,13 @@ def _refine(
     return fit_quantities(np.array(presses.places), presses.records, quantities), rows, reached
 
 
-def _row(space: FamilySpace, quantities: Mapping[str, Quantity], place: Floats, record: Record) -> dict[str, Any]:
+def _row(space: FamilySpace, quantities: Mapping[str, FamilyQuantity], place: Floats, record: Record) -> dict[str, Any]:
     """The row of a press that took no part, with the values of its keys."""
     values = {one.keys[0]: float(one.values(at)) for one, at in zip(space.ranges, place, strict=True)}
     return {"values": values, **held_out_row(quantities, place, record)}
 
 
-def _expected_percent(space: FamilySpace, quantities: Mapping[str, Quantity]) -> dict[str, float]:
+def _expected_percent(space: FamilySpace, quantities: Mapping[str, FamilyQuantity]) -> dict[str, float]:
     """Error in percent that 95 % of the designs are expected to stay below."""
     places = space.drawn_places(LOOKED_AT, 0)
     return {name: 100.0 * expected_error(quantities[name], places) for name in JUDGED}

@@ -12,7 +12,7 @@ from foundation.errors import InputError
 from softdot.config.schema import Config
 from softdot.differentiation import value_of
 from softdot.families.presses import nearest
-from softdot.families.quantity import Quantity, QuantityCourse
+from softdot.families.quantity import FamilyQuantity, QuantityCourse
 from softdot.families.space import FamilySpace
 
 EDGE = 1e-9
@@ -74,10 +74,10 @@ class Region:
 
 
 class Family:
-    """The presses of a family and its surrogate. quantities : name -> Quantity; facts : what family.json holds."""
+    """The presses of a family and its surrogate. quantities : name -> quantity; facts : what family.json holds."""
 
     def __init__(
-        self, space: FamilySpace, quantities: Mapping[str, Quantity], region: Region, facts: Mapping[str, Any]
+        self, space: FamilySpace, quantities: Mapping[str, FamilyQuantity], region: Region, facts: Mapping[str, Any]
     ) -> None:
         self.space, self.quantities, self.region, self.facts = space, dict(quantities), region, dict(facts)
         self.places = next(iter(self.quantities.values())).places

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from foundation.arrays import Floats
-from softdot.families.quantity import LEVEL, Quantity
+from softdot.families.quantity import LEVEL, FamilyQuantity
 from softdot.sweeps.points import Record
 
 FORCE, VOLTAGE = "reaction_force_N", "open_circuit_voltage_V"
@@ -15,8 +15,11 @@ JUDGED = (FORCE, VOLTAGE)
 
 
 def fit_quantities(
-    places: Floats, records: Sequence[Record], start: Mapping[str, Quantity] | None = None, names: Sequence[str] = ()
-) -> dict[str, Quantity]:
+    places: Floats,
+    records: Sequence[Record],
+    start: Mapping[str, FamilyQuantity] | None = None,
+    names: Sequence[str] = (),
+) -> dict[str, FamilyQuantity]:
     """Quantity by name, from the records (n) of presses at places (n, d).
 
     start : an earlier fit, whose hyperparameters are the first guess. names : these quantities alone; none: all.
@@ -26,11 +29,11 @@ def fit_quantities(
         values = np.array([record["courses"][name] for record in records])
         slopes = np.array([record["slopes"][name] for record in records])
         before = None if start is None or name not in start else start[name].process
-        found[name] = Quantity(places, values, slopes, start=None if before is None else before.scales)
+        found[name] = FamilyQuantity(places, values, slopes, start=None if before is None else before.scales)
     return found
 
 
-def expected_error(quantity: Quantity, places: Floats) -> float:
+def expected_error(quantity: FamilyQuantity, places: Floats) -> float:
     """Relative error of the last step that a share of designs at places (q, d) is expected to stay below.
 
     Deviations there times what the presses left out showed for theirs.
@@ -42,7 +45,7 @@ def expected_error(quantity: Quantity, places: Floats) -> float:
 
 
 def next_places(
-    quantities: Mapping[str, Quantity], asked: Mapping[str, float], candidates: Floats, count: int
+    quantities: Mapping[str, FamilyQuantity], asked: Mapping[str, float], candidates: Floats, count: int
 ) -> Floats:
     """The candidates (count, d) at which the deviations over the asked accuracies are largest.
 
@@ -58,16 +61,16 @@ def next_places(
     return np.array(chosen)
 
 
-def _with_guess(quantity: Quantity, place: Floats) -> Quantity:
+def _with_guess(quantity: FamilyQuantity, place: Floats) -> FamilyQuantity:
     """A quantity with its own prediction at a place (1, d) as a further press."""
     course = quantity.course(place)
     places, values = np.vstack([quantity.places, place]), np.vstack([quantity.values, course.value])
     slopes = None if quantity.slopes is None else np.concatenate([quantity.slopes, course.slopes])
     scales = None if quantity.process is None else quantity.process.scales
-    return Quantity(places, values, slopes, scales)
+    return FamilyQuantity(places, values, slopes, scales)
 
 
-def held_out_row(quantities: Mapping[str, Quantity], place: Floats, record: Record) -> dict[str, Any]:
+def held_out_row(quantities: Mapping[str, FamilyQuantity], place: Floats, record: Record) -> dict[str, Any]:
     """Errors in percent of the last step of a press at a place (d,) that took no part, and whether it is within the
     intervals.
     """

@@ -12,7 +12,7 @@ import numpy as np
 from foundation.errors import InputError
 from softdot.families.family import Family, Region
 from softdot.families.gradient_process import Scales
-from softdot.families.quantity import Quantity
+from softdot.families.quantity import FamilyQuantity
 from softdot.families.space import FamilySpace
 from softdot.json_files import plain, write_json
 from softdot.output import Product
@@ -77,7 +77,7 @@ def _family(facts: Mapping[str, Any], arrays: Mapping[str, Any]) -> Family:
     quantities = {}
     for number, name in enumerate(facts["quantities"]):
         scales = f"scales_{number}"
-        quantities[name] = Quantity(
+        quantities[name] = FamilyQuantity(
             arrays["places"], arrays[f"values_{number}"], arrays[f"slopes_{number}"],
             Scales.of(arrays[scales]) if scales in arrays else None,
         )  # fmt: skip

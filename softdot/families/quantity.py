@@ -71,7 +71,7 @@ class Forms:
             return np.where(self.sign != 0.0, self.sign * np.exp(modelled), modelled * self.size)
 
 
-class Quantity:
+class FamilyQuantity:
     """A quantity from its values (n, s) and slopes (n, d, s), None without, at places (n, d).
 
     factor : of the deviation that the process states, so that the interval holds for presses left out. scales, start :

@@ -15,7 +15,7 @@ from softdot.families.fit import JUDGED
 from softdot.families.folder import ARRAYS, load_family, write_family
 from softdot.families.gradient_process import GradientProcess, Scales
 from softdot.families.presses import common_mesh
-from softdot.families.quantity import Quantity
+from softdot.families.quantity import FamilyQuantity
 from softdot.families.report import write_page
 from softdot.families.space import FamilySpace
 from softdot.progress import Untold
@@ -88,7 +88,7 @@ def family():
     space = FamilySpace(space_of(THICKNESS, DEPTH))
     places = places_of(9, 2)
     courses, slopes = power_law(places, space)
-    quantities = {name: Quantity(places, courses[name], slopes[name]) for name in courses}
+    quantities = {name: FamilyQuantity(places, courses[name], slopes[name]) for name in courses}
     region = Region(np.vstack([places, [[0.6, 0.6]]]), np.array([[0.95, 0.95]]), ("it overlaps",))
     return Family(space, quantities, region, FACTS)
 
