@@ -140,29 +140,28 @@ def _refine(
     random = np.random.default_rng(asked.seed + 3)
     quantities = fit_quantities(np.array(presses.places), presses.records, names=JUDGED)
     rows: list[dict[str, Any]] = []
-    reached = False
+    good = confirmed = False
     while True:
         candidates = presses.possible(drawn)
-        good = all(expected_error(quantities[name], candidates) <= asked.accuracy[name] for name in JUDGED)
         room = asked.most - presses.count
-        if room <= 0 or not len(candidates):
+        good = all(expected_error(quantities[name], candidates) <= asked.accuracy[name] for name in JUDGED)
+        if (good and confirmed) or room <= 0 or not len(candidates):
             break
-        if good or room <= CHECKS:
+        if not confirmed and (good or room <= CHECKS):
             checks = candidates[random.choice(len(candidates), min(CHECKS, room, len(candidates)), replace=False)]
             solved = presses.press(list(checks), joins=False)
             rows = [_row(space, quantities, place, record) for place, record in solved]
-            reached = (
-                good
-                and bool(rows)
-                and all(row[name]["error_percent"] <= 100.0 * asked.accuracy[name] for row in rows for name in JUDGED)
-            )
+            confirmed = bool(rows) and all(_is_met(row, asked) for row in rows)
             presses.join(solved)
         else:
-            presses.press(list(next_places(quantities, asked.accuracy, candidates, min(BATCH, room - CHECKS))))
-        if reached:
-            break
+            presses.press(list(next_places(quantities, asked.accuracy, candidates, min(BATCH, room))))
         quantities = fit_quantities(np.array(presses.places), presses.records, quantities, JUDGED)
-    return fit_quantities(np.array(presses.places), presses.records, quantities), rows, reached
+    return fit_quantities(np.array(presses.places), presses.records, quantities), rows, good and confirmed
+
+
+def _is_met(row: Mapping[str, Any], asked: Asked) -> bool:
+    """Whether a press that took no part is answered as accurately as asked."""
+    return all(row[name]["error_percent"] <= 100.0 * asked.accuracy[name] for name in JUDGED)
 
 
 def _row(space: FamilySpace, quantities: Mapping[str, FamilyQuantity], place: Floats, record: Record) -> dict[str, Any]:

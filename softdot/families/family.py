@@ -94,7 +94,7 @@ class Family:
         family.press(medium1_thickness_mm=0.6): a key that is left out has the middle value of its range; whole keys are
         taken too, family.press(**{"segment.medium1.thickness_mm": 0.6}). InputError outside of the family.
         """
-        columns = [np.float64(one.values(np.float64(0.0))) for one in self.space.ranges]
+        columns = [one.values(0.0) for one in self.space.ranges]
         for name, value in values.items():
             if name not in self._names:
                 raise InputError(f"{name}: this family varies {', '.join(one.name for one in self.space.ranges)}")

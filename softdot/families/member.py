@@ -61,7 +61,7 @@ def member_at(space: FamilySpace, place: Sequence[float] | Floats) -> Member:
     """The member at a place. InputError for a design that cannot be built."""
     beside = []
     for number, one in enumerate(space.ranges):
-        value, slope = float(one.values(np.float64(place[number]))), float(one.slopes(np.float64(place[number])))
+        value, slope = float(one.values(place[number])), float(one.slopes(place[number]))
         step = RELATIVE_STEP * (abs(value) if one.is_log else one.high - one.low) / slope
         ends = [np.array(place, dtype=float) for _ in range(2)]
         ends[0][number] -= step

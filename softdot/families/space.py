@@ -50,21 +50,21 @@ class Range:
         """Whether places are even in the logarithm of the value: where it is positive, laws of powers are lines."""
         return self.low > 0.0
 
-    def places(self, values: Floats) -> Floats:
+    def places(self, values: Floats | float) -> Floats:
         """Places of values (...), -1 at the low end and 1 at the high one; not finite where there is no logarithm."""
         low, high = (np.log(self.low), np.log(self.high)) if self.is_log else (self.low, self.high)
         with np.errstate(divide="ignore", invalid="ignore"):
             at = np.log(values) if self.is_log else values
         return np.asarray(2.0 * (at - low) / (high - low) - 1.0)
 
-    def values(self, places: Floats) -> Floats:
+    def values(self, places: Floats | float) -> Floats:
         """Values at places (...)."""
         share = 0.5 * (np.asarray(places) + 1.0)
         if self.is_log:
             return np.asarray(self.low * (self.high / self.low) ** share)
         return np.asarray(self.low + share * (self.high - self.low))
 
-    def slopes(self, places: Floats) -> Floats:
+    def slopes(self, places: Floats | float) -> Floats:
         """Derivatives of the value by the place, at places (...)."""
         if self.is_log:
             return np.asarray(0.5 * np.log(self.high / self.low) * self.values(places))
@@ -107,7 +107,7 @@ class FamilySpace:
 
     def config_at(self, place: Sequence[float] | Floats) -> Config:
         """The configuration at a place (d,). InputError for one that cannot be built."""
-        row = tuple(float(one.values(np.float64(at))) for one, at in zip(self.ranges, place, strict=True))
+        row = tuple(float(one.values(at)) for one, at in zip(self.ranges, place, strict=True))
         point = point_at(self.base, self.sweep, row)
         if point.config is None:
             raise InputError(str(point.reason))
@@ -126,7 +126,7 @@ class FamilySpace:
     def told(self, place: Sequence[float] | Floats) -> str:
         """A place in words: each key with its value."""
         pairs = zip(self.ranges, place, strict=True)
-        return ", ".join(f"{one.keys[0]} = {float(one.values(np.float64(at))):.4g}" for one, at in pairs)
+        return ", ".join(f"{one.keys[0]} = {float(one.values(at)):.4g}" for one, at in pairs)
 
     def _refuse_other_parts(self) -> None:
         """InputError where a key does not act, or the ends of an axis differ in anything but numbers."""
