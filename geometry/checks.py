@@ -11,8 +11,9 @@ from foundation.arrays import Floats
 from foundation.errors import InputError
 from geometry.assembly import case_outer_box
 from geometry.dot import DotShape
+from geometry.electrode_outlines import check_electrodes
 from geometry.parameters import Dot, Segment
-from geometry.part_checks import check_effector, check_electrodes, covers_footprint, refuse_out_of_plane
+from geometry.part_checks import check_effector, covers_footprint, refuse_out_of_plane
 from geometry.stack import Dome, bodies, layers
 
 

@@ -187,12 +187,25 @@ class Medium(Table):
     material: str = Field("vnr", description="name of a material")
 
 
+RECTANGLE = ActsWith(needed=True, shape=("rectangle",))
+CIRCLE = ActsWith(needed=True, shape=("circle",))
+POLYGON = ActsWith(needed=True, shape=("polygon",))
+Place = tuple[Finite, Finite]
+
+
 class Electrode(Table):
-    """A rectangle of metal on the film; charge is collected under it only."""
+    """A piece of metal on the film; charge is collected under it only."""
 
     name: str = Field(description="name shown in the results")
-    center_mm: tuple[Finite, Finite] = Field((0.0, 0.0), description="centre, x and y")
-    size_mm: tuple[Positive, Positive] = Field(description="size in x and y")
+    shape: Literal["rectangle", "circle", "polygon"] = Field("rectangle", description="outline of the metal")
+    center_mm: Annotated[Place, ActsWith(shape=("rectangle", "circle"))] = Field(
+        (0.0, 0.0), description="centre, x and y"
+    )
+    size_mm: Annotated[tuple[Positive, Positive] | None, RECTANGLE] = Field(None, description="size in x and y")
+    radius_mm: Annotated[Positive | None, CIRCLE] = Field(None, description="radius of the circle")
+    corners_mm: Annotated[tuple[Place, ...] | None, POLYGON] = Field(
+        None, description="corners in order, x and y of each"
+    )
 
 
 class Film(Table):

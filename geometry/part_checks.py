@@ -1,9 +1,7 @@
-"""Checks whether an effector, the electrodes and a delaminated patch fit on their segment."""
-
-from itertools import combinations
+"""Checks whether an effector and a delaminated patch fit on their segment."""
 
 from foundation.errors import InputError
-from geometry.parameters import Effector, Electrode, Segment
+from geometry.parameters import Effector, Segment
 
 SIZES_OF_SHAPE: dict[str, tuple[str, ...]] = {
     "layer": (),
@@ -83,39 +81,6 @@ def _check_dome(effector: Effector) -> None:
             f"segment.effector.height_mm = {effector.height_mm:g}: a dome is at most half as high as its "
             f"foot is wide, {diameter / 2:g} for diameter_mm = {diameter:g}"
         )
-
-
-def check_electrodes(segment: Segment) -> None:
-    """Raise InputError for electrodes that leave the film, overlap each other or share a name."""
-    electrodes = segment.film.electrodes
-    for number, electrode in enumerate(electrodes):
-        refuse_out_of_plane(segment, f"segment.film.electrodes[{number}].center_mm[1]", electrode.center_mm[1])
-        _check_on_film(number, electrode, segment)
-    for first, second in combinations(electrodes, 2):
-        if first.name == second.name:
-            raise InputError(f"segment.film.electrodes: the name '{first.name}' is given twice")
-        if all(_shared_length_mm(first, second, axis) > ROUNDING_MM for axis in (0, 1)):
-            raise InputError(
-                f"segment.film.electrodes: '{first.name}' and '{second.name}' overlap by "
-                f"{_shared_length_mm(first, second, 0):.3g} x {_shared_length_mm(first, second, 1):.3g} mm"
-            )
-
-
-def _check_on_film(number: int, electrode: Electrode, segment: Segment) -> None:
-    for axis, limit in enumerate((segment.length_mm, segment.width_mm)):
-        reach = abs(electrode.center_mm[axis]) + electrode.size_mm[axis] / 2
-        if reach > limit / 2 + ROUNDING_MM:
-            raise InputError(
-                f"segment.film.electrodes[{number}]: '{electrode.name}' reaches {reach:g} mm from the "
-                f"centre in {'xy'[axis]}, beyond the edge of the film at {limit / 2:g} mm"
-            )
-
-
-def _shared_length_mm(first: Electrode, second: Electrode, axis: int) -> float:
-    """Length in mm along an axis that two electrodes share; negative for a gap."""
-    high = min(one.center_mm[axis] + one.size_mm[axis] / 2 for one in (first, second))
-    low = max(one.center_mm[axis] - one.size_mm[axis] / 2 for one in (first, second))
-    return high - low
 
 
 def check_patch(segment: Segment, bond: str, center_mm: tuple[float, float], diameter_mm: float) -> None:

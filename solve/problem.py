@@ -7,6 +7,7 @@ import numpy as np
 
 from foundation.errors import InputError
 from geometry.dot import DotShape
+from geometry.electrode_outlines import electrode_outlines
 from geometry.parameters import Segment
 from mesh.types import TetMesh
 from solve.fem.numbering import Numbers, Unknowns, number
@@ -19,7 +20,7 @@ from solve.model import Readout
 from solve.open_interfaces import OpenInterface
 from solve.physics import Physics
 from solve.readout.channel_parts import capacitances_F, conductances_uS
-from solve.symmetry import electrode_orbits, electrode_rectangles
+from solve.symmetry import electrode_orbits
 from solve.system import System
 from solve.terms.base import Term
 from solve.terms.bond import bond
@@ -46,8 +47,8 @@ def refuse_unresolved_electrodes(segment: Segment, tet_mesh: TetMesh, film: Film
     for electrode, covered in zip(segment.film.electrodes, whole, strict=False):
         if covered == 0.0:
             raise InputError(
-                f"segment.film.electrodes: '{electrode.name}' with size_mm = {list(electrode.size_mm)} is smaller than "
-                "the elements of the film; reduce mesh.film_element_size_mm"
+                f"segment.film.electrodes: '{electrode.name}' is smaller than the elements of the film; "
+                "reduce mesh.film_element_size_mm"
             )
 
 
@@ -107,7 +108,7 @@ def _number_unknowns(
         held_regions=segment.held_layers if segment.boundary == "clamped" else (),
         plane_strain=segment.section == "plane-strain",
         without_pressure=("film", *(name for name, law in laws.items() if law.compressible)),
-        electrodes=electrode_orbits(electrode_rectangles(segment), tet_mesh.planes),
+        electrodes=electrode_orbits(electrode_outlines(segment), tet_mesh.planes),
         two_way=two_way and not virtual_ground,
         parallel=parallel,
         approach=force_driven or any(one.frees_dot for one in physics.terms),
@@ -142,7 +143,7 @@ def _film_region(make: Builder, physics: Physics) -> FilmRegion:
         make.tet_mesh.tets[make.tet_mesh.region_tets("film")],
         make.unknowns.displacement,
         make.unknowns.voltage,
-        electrode_rectangles(make.segment) * (1e-3 / units.length),
+        [1e-3 / units.length * np.asarray(outline) for outline in electrode_outlines(make.segment)],
         1e-6 * make.segment.film.thickness_um / units.length,
         physics.prestretch,
         _laws_around(make, physics, "film", scaled),

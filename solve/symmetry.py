@@ -6,11 +6,14 @@ isotropic. On the plane the displacement normal to it is zero, and so is the tra
 condition of the weak form.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from foundation.arrays import Floats, Ints
 from geometry.dot import DotShape
-from geometry.parameters import Segment
+from geometry.electrode_outlines import electrode_outlines
+from geometry.polygons import Point
 from mesh.options import MeshOptions
 from mesh.types import Planes
 from solve.materials.film import FilmLaw, film_law
@@ -19,6 +22,8 @@ from solve.model import Model
 from solve.physics import Delamination
 from solve.readout.channel_parts import capacitances_F, conductances_uS
 from solve.tensors import strain_rotation
+
+Outlines = Sequence[Sequence[Point]]
 
 SAME_PLACE_MM, SAME_CONSTANT = 1e-9, 1e-9
 """How far an image may be off: in mm; of the largest constant, for angles whose cosine is rounded."""
@@ -41,7 +46,7 @@ def _press_is_mirrored(model: Model, dot: DotShape, axis: int) -> bool:
     assert isinstance(film, PiezoelectricFilm)
     return (
         law_is_mirrored(film_law(film, model.segment.film.draw_angle_deg), axis)
-        and electrode_images(electrode_rectangles(model.segment), axis) is not None
+        and electrode_images(electrode_outlines(model.segment), axis) is not None
         and _inputs_are_mirrored(model, axis)
         and _patches_are_mirrored(model.physics.delaminations, axis, model.segment.section == "plane-strain")
         and all(term.mirrored for term in model.physics.terms)
@@ -63,33 +68,30 @@ def law_is_mirrored(law: FilmLaw, axis: int) -> bool:
     )
 
 
-def electrode_rectangles(segment: Segment) -> Floats:
-    """Electrodes as (e, 4) x0, x1, y0, y1 in mm; without any, one over everything.
-
-    In a plane-strain slice nothing varies over y: the electrodes then reach over the whole slice, and their
-    share of the width is applied with the width (see solve.whole_segment.whole_charge).
-    """
-    if not segment.film.electrodes:
-        return np.array([[-np.inf, np.inf, -np.inf, np.inf]])
-    centre = np.array([e.center_mm for e in segment.film.electrodes])
-    half = 0.5 * np.array([e.size_mm for e in segment.film.electrodes])
-    rectangles = np.column_stack([centre - half, centre + half])[:, [0, 2, 1, 3]]
-    if segment.section == "plane-strain":
-        rectangles[:, 2:] = -np.inf, np.inf
-    return rectangles
+def electrode_images(outlines: Outlines, axis: int) -> Ints | None:
+    """The electrode (e,) that is the image of each of the outlines; None where one has none."""
+    corners = [np.asarray(outline) for outline in outlines]
+    middles = np.array([each.mean(axis=0) for each in corners])
+    sign = np.where(np.arange(2) == axis, -1.0, 1.0)
+    found = []
+    for own, middle in zip(corners, middles, strict=True):
+        near = np.flatnonzero(np.abs(middles - sign * middle).max(axis=1) <= SAME_PLACE_MM)
+        image = sign * own[::-1]
+        found.append(next((number for number in near if _is_same_outline(corners[number], image)), None))
+    return None if None in found else np.array(found, dtype=np.int64)
 
 
-def electrode_images(rectangles: Floats, axis: int) -> Ints | None:
-    """The electrode (e,) that is the image of each of the rectangles (e, 4); None where one has none."""
-    image = rectangles.copy()
-    image[:, [2 * axis, 2 * axis + 1]] = -rectangles[:, [2 * axis + 1, 2 * axis]]
-    same = np.array([[np.allclose(one, other, rtol=0.0, atol=SAME_PLACE_MM) for other in rectangles] for one in image])
-    return np.asarray(same.argmax(axis=1)) if same.any(axis=1).all() else None
+def _is_same_outline(one: Floats, other: Floats) -> bool:
+    """Whether corners (n, 2) in order are those of another outline, whichever comes first."""
+    if len(one) != len(other):
+        return False
+    first = int(np.abs(other - one[0]).max(axis=1).argmin())
+    return bool(np.abs(np.roll(other, -first, axis=0) - one).max() <= SAME_PLACE_MM)
 
 
 def _inputs_are_mirrored(model: Model, axis: int) -> bool:
     """Whether amplifiers of electrodes that act back on the film are their own images."""
-    image = electrode_images(electrode_rectangles(model.segment), axis)
+    image = electrode_images(electrode_outlines(model.segment), axis)
     if not model.separate_channels or image is None:
         return image is not None
     leaks = conductances_uS(model.physics.channels, len(image))
@@ -126,21 +128,21 @@ def dot_is_mirrored(dot: DotShape, axis: int) -> bool:
     return bool((apart.min(axis=1) <= SAME_PLACE_MM).all())
 
 
-def electrode_orbits(rectangles: Floats, planes: Planes) -> Ints:
-    """Number (e,), from 0, of the group that each of the electrodes (e, 4) shares with its images."""
-    first = np.arange(len(rectangles))
+def electrode_orbits(outlines: Outlines, planes: Planes) -> Ints:
+    """Number (e,), from 0, of the group that each of the electrodes shares with its images."""
+    first = np.arange(len(outlines))
     for axis in planes:
-        image = electrode_images(rectangles, axis)
+        image = electrode_images(outlines, axis)
         assert image is not None, "the mesh is cut at a plane that the electrodes do not have"
         first = np.minimum(first, first[image])
     return np.unique(first, return_inverse=True)[1].ravel()
 
 
-def electrode_image_sum(rectangles: Floats, planes: Planes) -> Floats:
-    """Matrix (e, e) from what each electrode (e, 4) collects of the meshed part to what it collects of the whole."""
-    total = np.eye(len(rectangles))
+def electrode_image_sum(outlines: Outlines, planes: Planes) -> Floats:
+    """Matrix (e, e) from what each electrode collects of the meshed part to what it collects of the whole."""
+    total = np.eye(len(outlines))
     for axis in planes:
-        image = electrode_images(rectangles, axis)
+        image = electrode_images(outlines, axis)
         assert image is not None, "the mesh is cut at a plane that the electrodes do not have"
         total = total + total[:, image]
     return total

@@ -3,9 +3,10 @@
 import numpy as np
 
 from foundation.arrays import Floats
+from geometry.electrode_outlines import electrode_outlines
 from geometry.parameters import Segment
 from mesh.types import TetMesh
-from solve.symmetry import electrode_image_sum, electrode_rectangles
+from solve.symmetry import electrode_image_sum
 
 
 def meshed_share(segment: Segment, tet_mesh: TetMesh) -> float:
@@ -16,8 +17,8 @@ def meshed_share(segment: Segment, tet_mesh: TetMesh) -> float:
 
 def whole_charge(segment: Segment, tet_mesh: TetMesh) -> Floats:
     """Matrix (e, e) from what each electrode collects where it is meshed to what each collects in the whole segment."""
-    total = electrode_image_sum(electrode_rectangles(segment), tet_mesh.planes)
+    total = electrode_image_sum(electrode_outlines(segment), tet_mesh.planes)
     if segment.section == "solid":
         return total
-    widths = np.array([e.size_mm[1] for e in segment.film.electrodes] or [segment.width_mm])
+    widths = np.array([e.size_mm[1] for e in segment.film.electrodes if e.size_mm] or [segment.width_mm])
     return np.asarray(np.minimum(widths, segment.width_mm)[:, None] / tet_mesh.thickness_mm * total)

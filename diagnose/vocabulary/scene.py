@@ -8,6 +8,7 @@ import numpy as np
 
 from diagnose.signals.recording import Drive, Recording
 from diagnose.signals.time_scales import TimeScales
+from geometry.electrode_outlines import electrode_area_mm2
 from solve.materials.parameters import VACUUM_PERMITTIVITY, Material, PiezoelectricFilm
 from solve.mechanisms.base import BONDS, CHANNELS
 from solve.model import Model, Readout
@@ -138,6 +139,5 @@ def film_capacitance_pF(model: Model) -> float:
     """eps A / t under all electrodes."""
     segment, film = model.segment, model.materials["film"]
     assert isinstance(film, PiezoelectricFilm)
-    sizes = [electrode.size_mm for electrode in segment.film.electrodes] or [(segment.length_mm, segment.width_mm)]
-    area = sum(min(x, segment.length_mm) * min(y, segment.width_mm) for x, y in sizes)
+    area = electrode_area_mm2(segment)
     return 1e9 * VACUUM_PERMITTIVITY * film.relative_permittivity * area / (1e-3 * segment.film.thickness_um)

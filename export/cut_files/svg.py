@@ -5,7 +5,8 @@ from xml.etree import ElementTree as Xml
 
 from export.cut_files.style import STYLES, size_text
 from foundation.files import write_whole_text
-from geometry.flat.pattern import Circle, Dimension, FlatPattern, Label, LayerName, Outline, Point, Stroke
+from geometry.flat.pattern import Circle, Dimension, FlatPattern, Label, LayerName, Outline, Stroke
+from geometry.polygons import Point
 
 DIMENSION_ROOM_MM = 8.0
 """Room around the pattern, for dimensions."""

@@ -15,7 +15,8 @@ from geometry.array.layout import Rectangle
 from geometry.fabrication.part import ROUNDING_MM
 from geometry.flat.film import METAL_EDGE_MM, PAD_LENGTH_MM, FilmLayout
 from geometry.flat.paths import CrossSection, length_mm, quadrilaterals, ribbon_sections, squares, turn_points
-from geometry.flat.pattern import LayerName, Outline, Point, polygon_gap_mm, rectangle, shared_area_mm2
+from geometry.flat.pattern import LayerName, Outline, rectangle
+from geometry.polygons import Point, polygon_gap_mm, shared_area_mm2
 
 COMMON_ELECTRODE = "common"
 

@@ -16,7 +16,7 @@ from typing import Literal
 from foundation.errors import InputError
 from geometry.array.layout import Rectangle
 from geometry.fabrication.part import ROUNDING_MM
-from geometry.flat.pattern import Point
+from geometry.polygons import Point
 
 Side = Literal["ahead", "beside", "behind"]
 

@@ -5,7 +5,8 @@ from geometry.fabrication.parameters import Fabrication
 from geometry.flat.electrodes import Metal, distinct_points
 from geometry.flat.film import PAD_LENGTH_MM, FilmLayout
 from geometry.flat.panel import Panel
-from geometry.flat.pattern import Dimension, FlatPattern, Label, Outline, Point
+from geometry.flat.pattern import Dimension, FlatPattern, Label, Outline
+from geometry.polygons import Point
 
 NAME_HEIGHT_MM = 0.6
 MASK_THICKNESS_MM = 0.1

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 from geometry.fabrication.parameters import Fabrication
 from geometry.flat.film import FilmLayout
-from geometry.flat.pattern import Circle, Dimension, Label, Outline, Point, rectangle
+from geometry.flat.pattern import Circle, Dimension, Label, Outline, rectangle
+from geometry.polygons import Point
 
 PANEL_RIM_MM, PANEL_INNER_RIM_MM = 2.0, 4.0
 """Panel around a registration hole and beside the film, and between both: room for a size on the drawing."""

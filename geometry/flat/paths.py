@@ -9,7 +9,7 @@ from itertools import pairwise
 from math import hypot
 
 from geometry.fabrication.part import ROUNDING_MM
-from geometry.flat.pattern import Point
+from geometry.polygons import Point
 
 CrossSection = tuple[Point, Point]
 """Right and left edge of a ribbon, as seen along its way."""

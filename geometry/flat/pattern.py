@@ -1,12 +1,12 @@
 """A flat pattern: closed lines on named layers, with the dimensions that a bench needs; kerf compensation."""
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import cos, hypot, pi, radians, sin
 from typing import Literal
 
+from geometry.polygons import Point
+
 LayerName = Literal["CUT", "ELECTRODE-TOP", "ELECTRODE-BOTTOM", "ENGRAVE", "DIMENSION"]
-Point = tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -188,68 +188,6 @@ def _rotated_dimension(one: Dimension, quarter: int) -> Dimension:
     ends = (_rotated_point(one.start, quarter), _rotated_point(one.end, quarter))
     start, end = sorted(ends, key=lambda point: point[0 if along == "x" else 1])
     return Dimension(start, end, along, moved[1] if along == "x" else moved[0])
-
-
-def polygon_gap_mm(one: Sequence[Point], other: Sequence[Point]) -> float:
-    """Distance in mm of two convex polygons.
-
-    Where they touch or overlap it is their separation along a normal, zero or negative.
-    """
-    apart = _separation(one, other)
-    if apart <= 0.0:
-        return apart
-    pairs = ((one, other), (other, one))
-    return min(_distance_to_segment(p, a, b) for first, second in pairs for p in first for a, b in _edges(second))
-
-
-def _edges(polygon: Sequence[Point]) -> Iterator[tuple[Point, Point]]:
-    return zip(polygon, (*polygon[1:], polygon[0]), strict=True)
-
-
-def _separation(one: Sequence[Point], other: Sequence[Point]) -> float:
-    """Largest separation of two convex polygons along a normal of their edges; negative where they overlap."""
-    found = -float("inf")
-    for first, second in ((one, other), (other, one)):
-        for a, b in _edges(first):
-            length = hypot(b[0] - a[0], b[1] - a[1])
-            n = ((b[1] - a[1]) / length, (a[0] - b[0]) / length)
-            reach = max(n[0] * p[0] + n[1] * p[1] for p in first)
-            found = max(found, min(n[0] * p[0] + n[1] * p[1] for p in second) - reach)
-    return found
-
-
-def _distance_to_segment(p: Point, a: Point, b: Point) -> float:
-    """Distance of a point from the line segment between two others."""
-    along = (b[0] - a[0], b[1] - a[1])
-    share = ((p[0] - a[0]) * along[0] + (p[1] - a[1]) * along[1]) / (along[0] ** 2 + along[1] ** 2)
-    share = min(max(share, 0.0), 1.0)
-    return hypot(p[0] - a[0] - share * along[0], p[1] - a[1] - share * along[1])
-
-
-def shared_area_mm2(one: Sequence[Point], other: Sequence[Point]) -> float:
-    """Area common to two convex, counter-clockwise polygons (Sutherland and Hodgman, 1974)."""
-    kept = list(one)
-    for a, b in zip(other, (*other[1:], other[0]), strict=True):
-        kept = _clip_left(kept, a, b)
-    after = [*kept[1:], *kept[:1]]
-    return abs(sum(p[0] * q[1] - q[0] * p[1] for p, q in zip(kept, after, strict=True))) / 2
-
-
-def _clip_left(polygon: list[Point], a: Point, b: Point) -> list[Point]:
-    """The part of a polygon to the left of the line from a to b."""
-
-    def side(p: Point) -> float:
-        return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
-
-    kept: list[Point] = []
-    for p, q in zip(polygon, [*polygon[1:], *polygon[:1]], strict=True):
-        s, t = side(p), side(q)
-        if s >= 0.0:
-            kept.append(p)
-        if s * t < 0.0:
-            share = s / (s - t)
-            kept.append((p[0] + share * (q[0] - p[0]), p[1] + share * (q[1] - p[1])))
-    return kept
 
 
 def kerf_compensated_pattern(pattern: FlatPattern) -> FlatPattern:

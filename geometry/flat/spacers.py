@@ -6,8 +6,9 @@ from foundation.errors import InputError
 from geometry.fabrication.device import Device
 from geometry.fabrication.parameters import Fabrication
 from geometry.fabrication.part import ROUNDING_MM
-from geometry.flat.pattern import Dimension, FlatPattern, Outline, Point
+from geometry.flat.pattern import Dimension, FlatPattern, Outline
 from geometry.part_checks import covers_footprint
+from geometry.polygons import Point
 from geometry.stack import layers
 
 STRIP_GRIP_MM = 4.0

@@ -1,6 +1,6 @@
 """The piezoelectric film: quadratic tetrahedra of its true thickness, charge collected by electrodes."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +13,7 @@ from solve.fem.shape_functions import physical_gradients, quadratic
 from solve.materials.film import FilmLaw
 from solve.materials.inelastic import Inelastic, StressResponse, respond, rest_memories, time_error
 from solve.terms.base import Block, History, Term, Trial
-from solve.terms.electrodes import Coverage, coverage
+from solve.terms.electrodes import Coverage, coverage, electrode_over, electrode_pieces
 from solve.terms.solid import refuse_inversion
 
 
@@ -134,20 +134,21 @@ def film_region(
     tets: Ints,
     displacement_dofs: Ints,
     voltage_dofs: Ints,
-    rectangles: Floats,
+    outlines: Sequence[Floats],
     thickness: float,
     prestretch: tuple[float, float] = (0.0, 0.0),
     inelastic: tuple[Inelastic, ...] = (),
 ) -> FilmRegion:
-    """Prepare the film: points (n, 3), tets (m, 10), electrodes as rectangles (e, 4) x0, x1, y0, y1.
+    """Prepare the film: points (n, 3), tets (m, 10), outlines of the electrodes, corners (c, 2).
 
     prestretch : nominal strains in x and y that the film has been given before it was bonded.
     """
+    pieces = electrode_pieces(outlines)
     reference, weight = tetrahedron()
     shape, slope = quadratic(reference)
     gradient, volume = physical_gradients(points[tets], slope, weight)
     at_points = np.einsum("qn,mni->mqi", shape, points[tets])
-    electrode = electrode_over(points[tets[:, :4]].mean(axis=1), rectangles)
+    electrode = electrode_over(points[tets[:, :4]].mean(axis=1), pieces)
     dofs = np.concatenate(
         [displacement_dofs[tets].reshape(-1, 30), np.append(voltage_dofs, -1)[electrode][:, None]], axis=1
     )
@@ -158,7 +159,7 @@ def film_region(
         gradient,
         volume,
         electrode,
-        coverage(points[tets[:, :4]], at_points, volume, rectangles),
+        coverage(points[tets[:, :4]], at_points, volume, pieces),
         voltage_dofs,
         thickness,
         prestrain(law, prestretch),
@@ -172,12 +173,3 @@ def prestrain(law: FilmLaw, prestretch: tuple[float, float]) -> Floats:
     strain[:2] = [e + 0.5 * e * e for e in prestretch]
     strain[2] = -float(law.stiffness[2] @ strain) / law.stiffness[2, 2]
     return strain
-
-
-def electrode_over(points: Floats, rectangles: Floats) -> Ints:
-    """Index of the electrode that covers each point (..., 3), -1 for bare film."""
-    index = np.full(points.shape[:-1], -1)
-    for number, (x0, x1, y0, y1) in enumerate(rectangles):
-        x, y = points[..., 0], points[..., 1]
-        index[(x >= x0) & (x <= x1) & (y >= y0) & (y <= y1)] = number
-    return index

@@ -15,8 +15,8 @@ from geometry.fabrication.parameters import Fabrication
 from geometry.flat.electrodes import stray_area_mm2
 from geometry.flat.escape import Lattice
 from geometry.flat.flat_kit import flat_kit
-from geometry.flat.pattern import shared_area_mm2
 from geometry.parameters import Dot, Effector, Film, Medium, Segment
+from geometry.polygons import shared_area_mm2
 from tests.cases import for_each
 
 FINE = {"trace_width_mm": 0.1, "trace_gap_mm": 0.05, "kerf_mm": 0.02}

@@ -70,7 +70,7 @@ REFUSED = {
     ),
     "overlapping electrodes": (
         {"film": film(("a", (-0.4, 0.0), (1.0, 2.0)), ("b", (0.5, 0.5), (1.0, 1.0)))},
-        "segment.film.electrodes: 'a' and 'b' overlap by 0.1 x 1 mm",
+        "segment.film.electrodes: 'a' and 'b' overlap by 0.1 mm2",
     ),
     "electrodes of one name": (
         {"film": film(("a", (-0.6, 0.0), (1.0, 2.0)), ("a", (0.6, 0.0), (1.0, 1.0)))},

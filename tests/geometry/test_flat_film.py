@@ -9,8 +9,9 @@ from geometry.fabrication.device import lone_device
 from geometry.fabrication.parameters import Fabrication
 from geometry.flat.electrodes import stray_area_mm2
 from geometry.flat.flat_kit import flat_kit
-from geometry.flat.pattern import Label, polygon_gap_mm, shared_area_mm2
+from geometry.flat.pattern import Label
 from geometry.parameters import Electrode, Film
+from geometry.polygons import polygon_gap_mm, shared_area_mm2
 from tests.cases import for_each
 
 EXITS = ("+x", "-x", "+y", "-y")

@@ -14,12 +14,11 @@ from geometry.flat.pattern import (
     Outline,
     kerf_compensated_pattern,
     offset_polygon,
-    polygon_gap_mm,
     rectangle,
     rotated_pattern,
-    shared_area_mm2,
 )
 from geometry.parameters import Effector
+from geometry.polygons import polygon_gap_mm, shared_area_mm2
 
 SQUARE = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
 

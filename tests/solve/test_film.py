@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from geometry.electrode_outlines import EVERYWHERE, rectangle_corners
 from solve.materials.film import film_law
 from solve.materials.parameters import VACUUM_PERMITTIVITY, PiezoelectricFilm
 from solve.terms.film import film_region
@@ -13,15 +14,14 @@ from tests.solve.trial import trial
 THICKNESS = 28e-6
 SIZE = (2.5e-3, 2.5e-3, THICKNESS)
 AREA = SIZE[0] * SIZE[1]
-EVERYWHERE = [-np.inf, np.inf, -np.inf, np.inf]
 
 
-def film(material, angle_deg=0.0, rectangles=(EVERYWHERE,)):
+def film(material, angle_deg=0.0, outlines=(EVERYWHERE,)):
     points, tets = box(2, SIZE)
     dofs = np.arange(points.size).reshape(-1, 3)
-    voltage = np.full(len(rectangles), -1)
+    voltage = np.full(len(outlines), -1)
     return points, film_region(
-        film_law(material, angle_deg), points, tets, dofs, voltage, np.array(rectangles), THICKNESS
+        film_law(material, angle_deg), points, tets, dofs, voltage, [np.array(one) for one in outlines], THICKNESS
     )
 
 
@@ -68,7 +68,9 @@ def test_draw_angle_turns_the_coupling(angle, d):
 
 
 def test_half_an_electrode_collects_half_the_charge_at_the_same_voltage():
-    points, region = film(PVDF, rectangles=([0.0, 1.25e-3, -1, 1], [1.25e-3, 2.5e-3, -1, 1]))
+    points, region = film(
+        PVDF, outlines=(rectangle_corners(0.0, 1.25e-3, -1, 1), rectangle_corners(1.25e-3, 2.5e-3, -1, 1))
+    )
     charge = charge_of(region, stretched(points, PVDF, (1e4, 0, 0)))
     assert charge[0] == pytest.approx(charge[1])
     assert charge.sum() == pytest.approx(23e-12 * 1e4 * AREA, rel=1e-4)

@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from geometry.electrode_outlines import EVERYWHERE
 from solve.materials.film import film_law
 from solve.materials.parameters import VACUUM_PERMITTIVITY, PiezoelectricFilm
 from solve.terms.base import Trial
@@ -44,7 +45,7 @@ class Strip:
         )
         self.points, tets = box(2, SIZE)
         self.numbers = np.arange(self.points.size).reshape(-1, 3)
-        voltage, everywhere = np.array([self.points.size]), np.array([[-np.inf, np.inf, -np.inf, np.inf]])
+        voltage, everywhere = np.array([self.points.size]), [np.array(EVERYWHERE)]
         film = film_region(law, self.points, tets, self.numbers, voltage, everywhere, THICKNESS)
         charges = float(film.capacitance()[0]), UNIT * input_capacitance, resistance / UNIT
         self.terms = (film, Circuit(self.points.size, *charges))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
+from geometry.electrode_outlines import EVERYWHERE
 from softdot.verify.body import solid_body
 from solve.fem.pattern import build_pattern
 from solve.materials.film import FilmLaw
@@ -103,7 +104,7 @@ def test_film_stiffness_times_any_displacement(block):
     shear = np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 1.0]) * SHEAR
     shear[:3, :3] += BULK - 2.0 * SHEAR / 3.0
     law = FilmLaw(shear, np.zeros(6), 1.0, np.eye(6))
-    everywhere = np.array([[-np.inf, np.inf, -np.inf, np.inf]])
+    everywhere = [np.array(EVERYWHERE)]
     ours = np.arange(points.size).reshape(-1, 3)
     film = film_region(law, points, tets, ours, np.array([-1]), everywhere, 1.0)
     u = np.random.default_rng(1).standard_normal(points.size)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from geometry.dot import DotShape
+from geometry.electrode_outlines import EVERYWHERE
 from softdot.verify.body import ElasticBody, solid_body
 from softdot.verify.lattice import grid
 from solve.materials.film import FilmLaw, film_law
@@ -67,7 +68,7 @@ def test_an_affine_displacement_of_the_film_under_voltage_is_affine_inside():
     numbers = np.arange(shape.points.size).reshape(-1, 3)
     body, affine = ElasticBody(shape.points, numbers, numbers.size), shape.points @ STRAIN.T
     voltage = body.add_unknowns(1)
-    everywhere = np.array([[-np.inf, np.inf, -np.inf, np.inf]])
+    everywhere = [np.array(EVERYWHERE)]
     body.terms.append(film_region(law, shape.points, shape.tets, numbers, voltage, everywhere, 1.0))
     body.solve(surface_held(body, shape, affine), held={voltage[0]: 0.05}, steps=2)
     np.testing.assert_allclose(body.u, affine, atol=1e-10)

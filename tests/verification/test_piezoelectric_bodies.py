@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from geometry.electrode_outlines import EVERYWHERE
 from softdot.verify.body import ElasticBody
 from softdot.verify.lattice import grid
 from solve.materials.film import FilmLaw, film_law
@@ -12,7 +13,7 @@ from tests.cases import for_each
 from tests.verification.row import agrees
 
 YOUNG, POISSON, D31, EPSILON = 2e9, 0.29, 23e-12, 12.0 * VACUUM_PERMITTIVITY
-EVERYWHERE = np.array([[-np.inf, np.inf, -np.inf, np.inf]])
+OVER_ALL = [np.array(EVERYWHERE)]
 VOLT = 1e9  # the unit of voltage and Pa of stress that make all entries of the tangent alike
 STRESS = 1e9
 
@@ -37,7 +38,7 @@ def stiffness(open_circuit: bool, d31: float) -> float:
     numbers = np.arange(shape.points.size).reshape(-1, 3)
     body = ElasticBody(shape.points, numbers, numbers.size)
     voltage = body.add_unknowns(1)
-    body.terms.append(film_region(scaled_law(d31), shape.points, shape.tets, numbers, voltage, EVERYWHERE, 1.0))
+    body.terms.append(film_region(scaled_law(d31), shape.points, shape.tets, numbers, voltage, OVER_ALL, 1.0))
     prescribed, strain = body.free_displacements(), 1e-6
     for axis in range(3):
         prescribed[shape.points[:, axis] == 0.0, axis] = 0.0
@@ -69,7 +70,7 @@ def test_unimorph_voltage_is_the_curvature_times_the_distance_from_the_neutral_a
     shear = soft / STRESS / (2.0 * (1.0 + POISSON))
     body.add_region("substrate", LinearLaw(shear, bulk_modulus(shear, POISSON)), shape.tets[~above])
     voltage = body.add_unknowns(1)
-    piezo = film_region(scaled_law(D31), shape.points, shape.tets[above], numbers, np.array([-1]), EVERYWHERE, film)
+    piezo = film_region(scaled_law(D31), shape.points, shape.tets[above], numbers, np.array([-1]), OVER_ALL, film)
     body.terms.append(piezo)
     stretch = YOUNG * film, soft * substrate
     axis = (stretch[0] * film / 2 - stretch[1] * substrate / 2) / sum(stretch)

@@ -4,13 +4,17 @@ from collections.abc import Iterator, Sequence
 from math import sqrt
 from typing import Any
 
+import numpy as np
+
 from diagnose.forward import Candidate, Coordinate
 from diagnose.vocabulary.base import Vocabulary, register
 from diagnose.vocabulary.scene import Scene
 from geometry.dot_size import dot_size
+from geometry.electrode_outlines import electrode_outlines
 from geometry.part_checks import covers_footprint
 from geometry.stack import layers
 from solve.mechanisms.boundaries.dot_offset import DOT_OFFSET
+from solve.symmetry import electrode_images
 
 NODES = 0.35, 0.7, 1.0  # of the way to the side
 BY_HAND_MM = 0.15, 0.4  # 0.1 to 0.3 by hand
@@ -66,10 +70,11 @@ def _is_symmetric(scene: Scene, axis: int) -> bool:
     """Whether a dot that much to one side presses as one that much to the other, in every run."""
     film = scene.model.segment.film
     centred = [scene.model.dot.offset_mm[axis], *(place[axis] for place in scene.places)]
-    centred += [electrode.center_mm[axis] for electrode in film.electrodes]
     centred += [patch.center_mm[axis] for patch in scene.model.physics.delaminations]
     upright = not any(scene.model.dot.tilt_deg) and scene.model.dot.cell is None
-    return not any(centred) and upright and film.draw_angle_deg % 90.0 == 0.0
+    images = electrode_images(electrode_outlines(scene.model.segment), axis)
+    own = images is not None and bool((images == np.arange(len(images))).all())
+    return not any(centred) and own and upright and film.draw_angle_deg % 90.0 == 0.0
 
 
 register(Vocabulary(DOT_OFFSET, "{} is not where rig.toml places it", of_segment=of_segment))

@@ -5,6 +5,7 @@ from functools import partial
 import numpy as np
 
 from foundation.arrays import Bools
+from geometry.electrode_outlines import EVERYWHERE
 from softdot.verify.body import ElasticBody
 from softdot.verify.lattice import Grid, grid
 from softdot.verify.problem import Problem
@@ -15,7 +16,7 @@ from solve.terms.film import FilmRegion, film_region
 
 YOUNG, POISSON, D31, EPSILON = 2e9, 0.29, 23e-12, 12.0 * VACUUM_PERMITTIVITY
 """Young's modulus (Pa), Poisson's ratio, d31 (C/N) and permittivity (F/m) of the film."""
-EVERYWHERE = np.array([[-np.inf, np.inf, -np.inf, np.inf]])
+OVER_ALL = [np.array(EVERYWHERE)]
 """An electrode over the whole film."""
 VOLTAGE_UNIT = 1e9  # the unit of voltage and Pa of stress that make all entries of the tangent alike
 STRESS_UNIT = 1e9
@@ -49,7 +50,7 @@ def stretch_film(open_circuit: bool, d31: float) -> tuple[float, float]:
     numbers = np.arange(shape.points.size).reshape(-1, 3)
     body = ElasticBody(shape.points, numbers, numbers.size)
     voltage = body.add_unknowns(1)
-    film = film_region(scaled_law(d31), shape.points, shape.tets, numbers, voltage, EVERYWHERE, 1.0)
+    film = film_region(scaled_law(d31), shape.points, shape.tets, numbers, voltage, OVER_ALL, 1.0)
     body.terms.append(film)
     prescribed = body.free_displacements()
     for axis in range(3):
@@ -80,7 +81,7 @@ def unimorph_voltage() -> float:
     shear = SOFT / STRESS_UNIT / (2.0 * (1.0 + POISSON))
     body.add_region("substrate", LinearLaw(shear, bulk_modulus(shear, POISSON)), shape.tets[~above])
     voltage = body.add_unknowns(1)
-    film = film_region(scaled_law(D31), shape.points, shape.tets[above], numbers, np.array([-1]), EVERYWHERE, FILM)
+    film = film_region(scaled_law(D31), shape.points, shape.tets[above], numbers, np.array([-1]), OVER_ALL, FILM)
     body.terms.append(film)
     prescribed = body.free_displacements()
     prescribed[shape.points[:, 0] == 0.0, 0] = 0.0
@@ -127,7 +128,7 @@ def bimorph_tip() -> float:
 def _poled_film(sign: float, shape: Grid, own: Bools, numbers: np.ndarray, voltage: np.ndarray) -> FilmRegion:
     """A layer of film with its poling along +z or -z, by the sign."""
     law = scaled_law(sign * BIMORPH_D31)
-    return film_region(law, shape.points, shape.tets[own], numbers, voltage, EVERYWHERE, LAYER)
+    return film_region(law, shape.points, shape.tets[own], numbers, voltage, OVER_ALL, LAYER)
 
 
 PROBLEMS = (
