@@ -1,5 +1,6 @@
 """Maps of the film: its strain, and where its charge arises."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +19,8 @@ from export.view import (
     WIDTH_IN,
 )
 from foundation.arrays import Floats, Ints
+from geometry.electrode_outlines import electrode_corners
+from geometry.parameters import Electrode
 from mesh.types import TetMesh
 from solve.result import FilmPeak, Step
 
@@ -84,10 +87,11 @@ def film_map(tet_mesh: TetMesh, step: Step) -> FilmMap:
     )
 
 
-def film_figure(tet_mesh: TetMesh, step: Step, peak: FilmPeak) -> "Figure":
+def film_figure(tet_mesh: TetMesh, step: Step, peak: FilmPeak, electrodes: Sequence[Electrode] = ()) -> "Figure":
     """Strain and charge of the film: two maps from above, or for a plane-strain slice two lines along x.
 
     In the range of the stated largest values; those beyond it, at a held rim, have the colour of its end.
+    electrodes : drawn with their names.
     """
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
@@ -111,7 +115,27 @@ def film_figure(tet_mesh: TetMesh, step: Step, peak: FilmPeak) -> "Figure":
     most *= factor
     charge = Scale(f"charge density ({unit})", -most, most, DIVERGING)
     draw(figure, right, shown, factor * shown.charge_pC_per_mm2, charge)
+    for axes in (left, right):
+        _draw_electrodes(axes, electrodes, is_slice(tet_mesh), axes is right)
     return figure
+
+
+def _draw_electrodes(axes: Any, electrodes: Sequence[Electrode], sliced: bool, named: bool) -> None:
+    """Draw outlines of electrodes, at rest, on a map, or as bars below the line of a slice; named : with their names."""
+    from matplotlib.patches import Polygon
+
+    for electrode in electrodes:
+        corners = np.array(electrode_corners(electrode))
+        name = electrode.name.removeprefix("segment-")
+        if sliced:
+            ends = corners[:, 0].min(), corners[:, 0].max()
+            axes.plot(ends, (0.02, 0.02), transform=axes.get_xaxis_transform(), color=INK, lw=3, solid_capstyle="butt")
+            axes.text(np.mean(ends), 0.035, name, transform=axes.get_xaxis_transform(), ha="center", fontsize=9)
+            continue
+        axes.add_patch(Polygon(corners, fill=False, edgecolor=INK if named else "white", lw=1.2, ls=(0, (4, 2))))
+        if named:
+            pole = corners[np.argmin(corners @ (1e-3, -1.0))]
+            axes.annotate(name, pole, (0, -3), textcoords="offset points", ha="center", va="top", fontsize=9, color=INK)
 
 
 def strain_unit(strain: float) -> tuple[float, str]:

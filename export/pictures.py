@@ -1,5 +1,6 @@
 """All pictures of a run, and its curves: reaction force and voltage against indentation or time."""
 
+from collections.abc import Mapping, Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from export.view import DPI, HEIGHT_IN, INK, WIDTH_IN, DrawnBody, View, picture_
 from foundation.arrays import Floats
 from foundation.files import whole_folder
 from geometry.dot import DotShape
+from geometry.parameters import Electrode
 from mesh.types import TetMesh
 from solve.readout.course import PressCourse
 from solve.result import PressResult, Step
@@ -24,13 +26,14 @@ OPEN_CIRCUIT_COLOUR, READOUT_COLOUR = "#b5263b", "#3f7a4d"
 def draw_curves(
     abscissa: tuple[Floats, str],
     reaction_force_N: Floats,
-    open_circuit_voltage_V: Floats,
+    open_circuit_V: Mapping[str, Floats],
     readout_voltage_V: Floats | None,
     path: Path | BytesIO,
 ) -> None:
     """Draw force and voltages, each (s,), in two panels over the abscissa, and write a PNG.
 
-    abscissa : its values (s,) and its label.
+    abscissa : its values (s,) and its label. open_circuit_V : by the names of the electrodes, which stand in the legend
+    where there are several; the read-out is then that of all together.
     """
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
@@ -45,31 +48,32 @@ def draw_curves(
     force, voltage = figure.subplots(1, 2)
     force.plot(x, reaction_force_N, "o-", color="#33658a", lw=1.8, ms=4)
     _label_axes(force, below, "reaction force (N)")
-    scale, unit = voltage_unit(open_circuit_voltage_V)
-    lines = voltage.plot(
-        x, scale * open_circuit_voltage_V, "o-", color=OPEN_CIRCUIT_COLOUR, lw=1.8, ms=4, label="open circuit"
-    )
-    _label_axes(voltage, below, f"voltage ({unit})")
+    every = np.array(list(open_circuit_V.values()))
+    scale, unit = voltage_unit(every)
+    lines, several = [], len(every) > 1
+    for name, values in open_circuit_V.items():
+        look = {"label": name} if several else {"label": "open circuit", "color": OPEN_CIRCUIT_COLOUR}
+        lines += voltage.plot(x, scale * values, "o-", lw=1.8, ms=4, **look)
+    _label_axes(voltage, below, f"{'open-circuit ' if several else ''}voltage ({unit})")
     if readout_voltage_V is not None:
-        lines += _plot_readout(voltage, x, open_circuit_voltage_V, readout_voltage_V)
+        lines += _plot_readout(voltage, x, every, readout_voltage_V, "read-out, together" if several else "read-out")
     voltage.legend(handles=lines, frameon=False, fontsize=11, loc="lower left", bbox_to_anchor=(0, 1), ncols=2)
     save_png(figure, path)
 
 
-def _plot_readout(axes: Any, x: Floats, open_V: Floats, readout_V: Floats) -> list[Any]:
+def _plot_readout(axes: Any, x: Floats, open_V: Floats, readout_V: Floats, label: str) -> list[Any]:
     """Plot the read-out beside the open-circuit voltage; return its line.
 
     It has a scale of its own where it would else look like zero.
     """
     scale, unit = voltage_unit(open_V)
-    label = "read-out"
     if np.abs(readout_V).max() < 0.1 * np.abs(open_V).max():
         axes = axes.twinx()
         scale, unit = voltage_unit(readout_V)
         axes.set_ylabel(f"read-out voltage ({unit})", fontsize=12, color=READOUT_COLOUR)
         axes.tick_params(labelsize=11, colors=READOUT_COLOUR)
         axes.spines["top"].set_visible(False)
-        label += " (right)"
+        label += ", scale to the right"
     return list(axes.plot(x, scale * readout_V, "s--", color=READOUT_COLOUR, lw=1.6, ms=4, label=label))
 
 
@@ -91,24 +95,25 @@ def write_pictures(
     dot_shape: DotShape,
     folder: Path,
     along: PressCourse,
+    electrodes: Sequence[Electrode] = (),
 ) -> dict[str, Path]:
     """Write <name>.png for every name in PICTURE_NAMES; return paths by name. The folder appears whole or not at all.
 
-    along : its course in time.
+    along : its course in time. electrodes : drawn with their names on the film.
     Raises InputError when this machine lacks the system libraries to draw.
     """
     first, last = result.steps[0], deepest(result)
-    depth, force = last.indentation_m * MM_PER_M, last.reaction_force_N
-    pressed = f"Pressed {depth:.3g} mm deep with {force:.3g} N"
+    pressed = f"Pressed {last.indentation_m * MM_PER_M:.3g} mm deep with {last.reaction_force_N:.3g} N"
     with whole_folder(folder) as scratch:
         files = {name: scratch / f"{name}.png" for name in PICTURE_NAMES}
         draw_parts(open_scene(tet_mesh, first, dot_shape), "At rest, the dot just touching", files["undeformed"])
         scene = open_scene(tet_mesh, last, dot_shape)
         draw_parts(scene, pressed, files["deformed"])
         draw_von_mises(scene, pressed, files["von_mises"])
-        save_png(film_figure(tet_mesh, last, result.film_peak), files["film"])
+        save_png(film_figure(tet_mesh, last, result.film_peak, electrodes), files["film"])
         read = None if along.together_V is None else along.together_V[along.solved]
-        draw_curves(abscissa(result), *_force_and_voltage(result), read, files["force_voltage"])
+        force = np.array([step.reaction_force_N for step in result.steps])
+        draw_curves(abscissa(result), force, _open_circuit_V(result), read, files["force_voltage"])
         save_png(course_figure(along, result.electrode_names), files["course"])
     return {name: folder / f"{name}.png" for name in PICTURE_NAMES}
 
@@ -125,7 +130,7 @@ def draw_sample() -> None:
     sphere = DrawnBody(pyvista.Sphere().clip_closed_surface("y"), INK)
     axes.imshow(render([sphere], View(28.0, 18.0), box, 50.0), extent=box)
     save_png(figure, BytesIO())
-    draw_curves((np.arange(2.0), "sample"), np.arange(2.0), np.arange(2.0), None, BytesIO())
+    draw_curves((np.arange(2.0), "sample"), np.arange(2.0), {"": np.arange(2.0)}, None, BytesIO())
 
 
 def deepest(result: PressResult) -> Step:
@@ -147,10 +152,7 @@ def abscissa(result: PressResult) -> tuple[Floats, str]:
     return np.arange(len(depth), dtype=np.float64), "step"
 
 
-def _force_and_voltage(result: PressResult) -> tuple[Floats, Floats]:
-    """Force in N and open-circuit voltage in V of the electrodes in parallel, each (s,)."""
-    share = result.capacitance_F / result.capacitance_F.sum()
-    return (
-        np.array([step.reaction_force_N for step in result.steps]),
-        np.array([step.open_circuit_voltage_V @ share for step in result.steps]),
-    )
+def _open_circuit_V(result: PressResult) -> dict[str, Floats]:
+    """Open-circuit voltage (s,) of each electrode by its name."""
+    voltages = np.array([step.open_circuit_voltage_V for step in result.steps]).T
+    return dict(zip(result.electrode_names, voltages, strict=True))

@@ -197,6 +197,14 @@ def step_rows(summary: Mapping[str, Any]) -> tuple[list[str], list[list[str]]]:
         ("read-out voltage (V)", "readout_voltage_V"),
     ]
     present = [(head, summary[key]) for head, key in columns if summary.get(key) is not None]
+    each = summary.get("electrodes", [])
+    for one in each if len(each) > 1 else []:
+        present += [
+            (f"{one['name']}: charge (pC)", one["film_charge_pC"]),
+            (f"{one['name']}: open-circuit voltage (V)", one["open_circuit_voltage_V"]),
+        ]
+        if one.get("readout_voltage_V") is not None:
+            present.append((f"{one['name']}: read-out (V)", one["readout_voltage_V"]))
     rows = [[number(value) for value in row] for row in zip(*(values for _, values in present), strict=True)]
     return [head for head, _ in present], rows
 

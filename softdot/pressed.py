@@ -131,6 +131,7 @@ class Pressed:
         return table
 
     def _columns(self) -> dict[str, Floats]:
+        """Arrays (s,) of the steps; all electrodes together, then each of several."""
         columns = {
             "time_s": self.time_s,
             "indentation_mm": self.indentation_mm,
@@ -140,6 +141,9 @@ class Pressed:
         }
         if self.readout_voltage_V is not None:
             columns["readout_voltage_V"] = self.readout_voltage_V
+        if len(self.charges_pC) > 1:
+            columns |= {f"charge_pC_{name}": values for name, values in self.charges_pC.items()}
+            columns |= {f"voltage_V_{name}": values for name, values in self.voltages_V.items()}
         return columns
 
     def to_pyvista(self, step: int = LAST) -> "pv.UnstructuredGrid":
@@ -178,10 +182,15 @@ class Pressed:
         if self.case.is_amplified or self.result.follows_time or self.case.model.press.waveform is not None:
             return _as_notebook_picture(course_figure(self.course, self.result.electrode_names))
         figure = Figure(figsize=FIGURE_SIZE_IN, layout="constrained")
-        shown = {"reaction force (N)": self.reaction_force_N, "open-circuit voltage (V)": self.open_circuit_voltage_V}
-        for axes, (name, values) in zip(figure.subplots(1, 2), shown.items(), strict=True):
-            axes.plot(self.indentation_mm, values, "o-", markersize=3)
-            axes.set(xlabel="indentation (mm)", ylabel=name)
+        force, voltage = figure.subplots(1, 2)
+        force.plot(self.indentation_mm, self.reaction_force_N, "o-", markersize=3)
+        force.set(xlabel="indentation (mm)", ylabel="reaction force (N)")
+        for name, values in self.voltages_V.items():
+            voltage.plot(self.indentation_mm, values, "o-", markersize=3, label=name)
+        voltage.set(xlabel="indentation (mm)", ylabel="open-circuit voltage (V)")
+        if len(self.voltages_V) > 1:
+            voltage.legend(frameon=False)
+        for axes in (force, voltage):
             axes.grid(alpha=0.3)
         return _as_notebook_picture(figure)
 
@@ -190,7 +199,8 @@ class Pressed:
         from export.film_maps import film_figure
         from export.pictures import deepest
 
-        return _as_notebook_picture(film_figure(self.result.tet_mesh, deepest(self.result), self.result.film_peak))
+        shown = self.result.tet_mesh, deepest(self.result), self.result.film_peak
+        return _as_notebook_picture(film_figure(*shown, self.case.model.segment.film.electrodes))
 
     def _repr_html_(self) -> str:
         """For notebooks: how it ended, and a table of the steps."""

@@ -112,7 +112,7 @@ def _fill_folder(
         result, along = pressed.result, pressed.course
     if ahead is not None and ahead.cancel():  # not begun: it is done here, while the second process draws
         ahead = None
-    pictures = ask(draw, result.tet_mesh, result, case.dot, folder / "pictures", along)
+    pictures = ask(draw, result.tet_mesh, result, case.dot, folder / "pictures", along, model.segment.film.electrodes)
     summary |= {"mesh": mesh_part(quality, result.unknowns), **press_part(model, result, along)}
     warn(pressed.doubts)
     summary["warnings"] += pressed.doubts

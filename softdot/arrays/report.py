@@ -81,7 +81,8 @@ def _draw(found: ArrayStudy, folder: Path) -> list[tuple[str, str, str]]:
     scene = open_scene(found.result.tet_mesh, last, found.shown.dot)
     pressed = f"{found.shown_title}, {1e3 * last.indentation_m:.3g} mm deep with {last.reaction_force_N:.3g} N"
     draw_parts(scene, pressed, folder / "deformed.png")
-    save_png(film_figure(found.result.tet_mesh, last, found.result.film_peak), folder / "film.png")
+    film = found.result.tet_mesh, last, found.result.film_peak, layout.whole.film.electrodes
+    save_png(film_figure(*film), folder / "film.png")
     captions = [
         ("matrix.png", "The matrix.", "Each row is a press of one segment; colours are logarithmic above 1 %."),
         ("maps.png", "Where it goes.", "The array from above; the disc marks the pressed segment. "
