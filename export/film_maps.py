@@ -121,7 +121,7 @@ def film_figure(tet_mesh: TetMesh, step: Step, peak: FilmPeak, electrodes: Seque
 
 
 def _draw_electrodes(axes: Any, electrodes: Sequence[Electrode], sliced: bool, named: bool) -> None:
-    """Draw outlines of electrodes, at rest, on a map, or as bars below the line of a slice; named : with their names."""
+    """Draw outlines of electrodes at rest on a map, or as bars below the line of a slice; named : and their names."""
     from matplotlib.patches import Polygon
 
     for electrode in electrodes:
@@ -134,8 +134,9 @@ def _draw_electrodes(axes: Any, electrodes: Sequence[Electrode], sliced: bool, n
             continue
         axes.add_patch(Polygon(corners, fill=False, edgecolor=INK if named else "white", lw=1.2, ls=(0, (4, 2))))
         if named:
-            pole = corners[np.argmin(corners @ (1e-3, -1.0))]
-            axes.annotate(name, pole, (0, -3), textcoords="offset points", ha="center", va="top", fontsize=9, color=INK)
+            place = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
+            box = {"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 1.0}
+            axes.text(*place, name, ha="center", va="center", fontsize=9, color=INK, bbox=box)
 
 
 def strain_unit(strain: float) -> tuple[float, str]:

@@ -20,7 +20,8 @@ from mesh.types import TetMesh
 from solve.readout.course import PressCourse
 from solve.result import PressResult, Step
 
-OPEN_CIRCUIT_COLOUR, READOUT_COLOUR = "#b5263b", "#3f7a4d"
+OPEN_CIRCUIT_COLOURS = ("#b5263b", "#33658a", "#e08e2b", "#7b4fa3", "#5a5a5a", "#c46ab0", "#2a9d9d", "#8c6d46")
+READOUT_COLOUR = "#3f7a4d"
 
 
 def draw_curves(
@@ -51,12 +52,12 @@ def draw_curves(
     every = np.array(list(open_circuit_V.values()))
     scale, unit = voltage_unit(every)
     lines, several = [], len(every) > 1
-    for name, values in open_circuit_V.items():
-        look = {"label": name} if several else {"label": "open circuit", "color": OPEN_CIRCUIT_COLOUR}
+    for number, (name, values) in enumerate(open_circuit_V.items()):
+        look = {"label": name if several else "open circuit", "color": OPEN_CIRCUIT_COLOURS[number % 8]}
         lines += voltage.plot(x, scale * values, "o-", lw=1.8, ms=4, **look)
     _label_axes(voltage, below, f"{'open-circuit ' if several else ''}voltage ({unit})")
     if readout_voltage_V is not None:
-        lines += _plot_readout(voltage, x, every, readout_voltage_V, "read-out, together" if several else "read-out")
+        lines += _plot_readout(voltage, x, every, readout_voltage_V, "together, read" if several else "read-out")
     voltage.legend(handles=lines, frameon=False, fontsize=11, loc="lower left", bbox_to_anchor=(0, 1), ncols=2)
     save_png(figure, path)
 
@@ -73,7 +74,6 @@ def _plot_readout(axes: Any, x: Floats, open_V: Floats, readout_V: Floats, label
         axes.set_ylabel(f"read-out voltage ({unit})", fontsize=12, color=READOUT_COLOUR)
         axes.tick_params(labelsize=11, colors=READOUT_COLOUR)
         axes.spines["top"].set_visible(False)
-        label += ", scale to the right"
     return list(axes.plot(x, scale * readout_V, "s--", color=READOUT_COLOUR, lw=1.6, ms=4, label=label))
 
 

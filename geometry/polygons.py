@@ -68,6 +68,12 @@ def _clip_left(polygon: list[Point], a: Point, b: Point) -> list[Point]:
     return kept
 
 
+def bounding_rectangle(polygon: Sequence[Point]) -> tuple[float, float, float, float]:
+    """Least and largest x, then y, of the corners."""
+    x, y = zip(*polygon, strict=True)
+    return (min(x), max(x), min(y), max(y))
+
+
 def signed_area_mm2(polygon: Sequence[Point]) -> float:
     """Area inside a polygon, negative for a clockwise one, by the shoelace formula."""
     return sum(a[0] * b[1] - b[0] * a[1] for a, b in _edges(polygon)) / 2
@@ -86,11 +92,11 @@ def crossing_edges(polygon: Sequence[Point]) -> tuple[int, int] | None:
 def convex_pieces(polygon: Sequence[Point]) -> tuple[tuple[Point, ...], ...]:
     """Convex pieces of a simple counter-clockwise polygon: itself, or the ears that are cut off (Meisters, 1975)."""
     left, found = list(polygon), list[tuple[Point, ...]]()
-    if all(_turn(*corner) >= 0.0 for corner in _corners(left)):
+    if all(turning(*corner) >= 0.0 for corner in _corners(left)):
         return (tuple(left),)
     while len(left) > 2:
         corners = list(_corners(left))
-        flat = next((k for k, corner in enumerate(corners) if _turn(*corner) == 0.0), None)
+        flat = next((k for k, corner in enumerate(corners) if turning(*corner) == 0.0), None)
         at = flat if flat is not None else next(k for k, corner in enumerate(corners) if _is_ear(corner, left))
         found += [corners[at]] if flat is None else []
         del left[at]
@@ -102,7 +108,7 @@ def _corners(polygon: Sequence[Point]) -> Iterator[tuple[Point, Point, Point]]:
     return zip([polygon[-1], *polygon[:-1]], polygon, [*polygon[1:], polygon[0]], strict=True)
 
 
-def _turn(a: Point, b: Point, c: Point) -> float:
+def turning(a: Point, b: Point, c: Point) -> float:
     """Twice the area of a triangle, positive for a turn to the left."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
@@ -111,13 +117,15 @@ def _is_ear(corner: tuple[Point, Point, Point], polygon: Sequence[Point]) -> boo
     """Whether the triangle at a corner lies within the polygon."""
     a, b, c = corner
     others = (p for p in polygon if p not in corner)
-    return _turn(a, b, c) > 0.0 and not any(min(_turn(a, b, p), _turn(b, c, p), _turn(c, a, p)) >= 0.0 for p in others)
+    return turning(a, b, c) > 0.0 and not any(
+        min(turning(a, b, p), turning(b, c, p), turning(c, a, p)) >= 0.0 for p in others
+    )
 
 
 def _meet(one: tuple[Point, Point], other: tuple[Point, Point]) -> bool:
     """Whether two line segments share a point."""
     (a, b), (c, d) = one, other
-    turns = _turn(a, b, c), _turn(a, b, d), _turn(c, d, a), _turn(c, d, b)
-    if all(turn == 0.0 for turn in turns):  # on one line
+    turns = turning(a, b, c), turning(a, b, d), turning(c, d, a), turning(c, d, b)
+    if all(each == 0.0 for each in turns):  # on one line
         return all(max(min(a[k], b[k]), min(c[k], d[k])) <= min(max(a[k], b[k]), max(c[k], d[k])) for k in (0, 1))
     return turns[0] * turns[1] <= 0.0 and turns[2] * turns[3] <= 0.0

@@ -21,6 +21,7 @@ from export.page import page_environment
 from export.report import number
 from foundation.files import write_whole_text
 from geometry.flat.electrodes import Metal, stray_area_mm2, stray_areas_mm2
+from geometry.polygons import signed_area_mm2
 from solve.materials.parameters import VACUUM_PERMITTIVITY
 
 SHEET_RESISTANCE_OHM = {"NiAl": 3.0, "silver ink": 0.1}
@@ -61,7 +62,7 @@ def _capacitance_pF_per_mm2(contents: Contents) -> float:
 
 
 def _area_mm2(metal: Metal) -> float:
-    return (metal.rect[1] - metal.rect[0]) * (metal.rect[3] - metal.rect[2])
+    return sum(signed_area_mm2(piece) for piece in metal.plates)
 
 
 @dataclass(frozen=True)

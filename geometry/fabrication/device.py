@@ -12,6 +12,7 @@ from geometry.fabrication.parameters import Fabrication
 from geometry.fabrication.part import refuse_thin, subtract_solids
 from geometry.parameters import LayerName, Segment
 from geometry.part_checks import covers_footprint
+from geometry.polygons import bounding_rectangle
 from geometry.solids import layer_solids
 from geometry.stack import layers
 
@@ -167,13 +168,15 @@ class ExitFrame:
         u, v = place
         return ((u, v), (-v, u), (-u, -v), (v, -u))[round(self.turn_deg / 90.0) % 4]
 
+    def point_in_frame(self, place: tuple[float, float]) -> tuple[float, float]:
+        """A point of the device, in this frame."""
+        x, y = place
+        return ((x, y), (y, -x), (-x, -y), (-y, x))[round(self.turn_deg / 90.0) % 4]
+
     def rectangle_in_frame(self, rectangle: Rectangle) -> Rectangle:
         """A rectangle of the device, in this frame: least and largest u and v."""
-        quarter = round(self.turn_deg / 90.0) % 4
         x0, x1, y0, y1 = rectangle
-        corners = [((x, y), (y, -x), (-x, -y), (-y, x))[quarter] for x, y in ((x0, y0), (x1, y1))]
-        (u0, u1), (v0, v1) = (sorted(pair) for pair in zip(*corners, strict=True))
-        return (u0, u1, v0, v1)
+        return bounding_rectangle([self.point_in_frame((x0, y0)), self.point_in_frame((x1, y1))])
 
 
 def exit_frame(segment: Segment, fabrication: Fabrication) -> ExitFrame:

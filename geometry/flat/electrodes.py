@@ -16,7 +16,7 @@ from geometry.fabrication.part import ROUNDING_MM
 from geometry.flat.film import METAL_EDGE_MM, PAD_LENGTH_MM, FilmLayout
 from geometry.flat.paths import CrossSection, length_mm, quadrilaterals, ribbon_sections, squares, turn_points
 from geometry.flat.pattern import LayerName, Outline, rectangle
-from geometry.polygons import Point, polygon_gap_mm, shared_area_mm2
+from geometry.polygons import Point, bounding_rectangle, convex_pieces, polygon_gap_mm, shared_area_mm2, turning
 
 COMMON_ELECTRODE = "common"
 
@@ -70,7 +70,11 @@ def stray_areas_mm2(every: tuple[Metal, ...]) -> dict[str, float]:
     """
     *tops, bottom = every
     below = (*bottom.plates, *bottom.lead)
-    return {top.name: sum(shared_area_mm2(piece, one) for piece in top.lead for one in below) for top in tops}
+    return {
+        top.name: sum(shared_area_mm2(piece, one) for piece in top.lead for one in below)
+        - sum(shared_area_mm2(piece, one) for piece in top.lead for one in top.plates)  # where it begins on the metal
+        for top in tops
+    }
 
 
 def stray_area_mm2(every: tuple[Metal, ...]) -> float:
@@ -81,36 +85,64 @@ def stray_area_mm2(every: tuple[Metal, ...]) -> float:
 def _segment_metals(layout: FilmLayout) -> tuple[Metal, ...]:
     """Metal of electrodes anywhere on one segment; each lead runs aslant to its lane, the highest to the highest."""
     ordered = sorted(layout.electrodes.items(), key=lambda item: -(item[1][2] + item[1][3]))
-    bottom = _bounding_rectangle(list(layout.electrodes.values()))
-    every = [*((name, "top", rect) for name, rect in ordered), (COMMON_ELECTRODE, "bottom", bottom)]
+    bottom = _rectangle_corners(_bounding_rectangle(list(layout.electrodes.values())))
+    every = [*((name, "top", layout.outlines[name]) for name, _ in ordered), (COMMON_ELECTRODE, "bottom", bottom)]
     found = []
-    for number, (name, face, rect) in enumerate(every):
+    for number, (name, face, corners) in enumerate(every):
         place = layout.pad_count - 1 - number
-        start = _lead_start(name, rect, layout.lanes[place], layout)
-        line = (start, (layout.body_end, layout.lanes[place]))
-        width = min(layout.lead_width, rect[3] - rect[2])
-        first = ((start[0], start[1] - width / 2), (start[0], start[1] + width / 2))
-        far = length_mm(line), (layout.body_end - start[0]) / width
-        found.append(
-            _metal_with_lead(
-                name, face, rect, (_rectangle_corners(rect),), _rectangle_corners(rect), 2, [first], far, place, layout
-            )
-        )
+        kept, sections, start = _front_of(name, corners, layout.lanes[place], layout)
+        way = (start, (layout.body_end, layout.lanes[place]))
+        width = sections[-1][1][1] - sections[-1][0][1]
+        far = length_mm(way), (layout.body_end - start[0]) / width
+        rect, plates = bounding_rectangle(corners), convex_pieces(corners)
+        found.append(_metal_with_lead(name, face, rect, plates, kept, len(kept), sections, far, place, layout))
     return tuple(found)
 
 
-def _lead_start(name: str, rect: Rectangle, lane: float, layout: FilmLayout) -> Point:
-    """Point at which a lead leaves its electrode towards the cable, as near to its lane as can be. InputError."""
-    _, u1, v0, v1 = rect
-    half = min(layout.lead_width, v1 - v0) / 2
-    v = min(max(lane, v0 + half), v1 - half)
+def _front_of(
+    name: str, corners: Sequence[Point], lane: float, layout: FilmLayout
+) -> tuple[list[Point], list[CrossSection], Point]:
+    """Where a lead leaves an electrode towards the cable, as near to its lane as can be. InputError.
+
+    The corners that stay, from the left edge of the lead around to its right one; cross-sections of the lead where it
+    leaves the metal and where it is clear of it; the middle of the last.
+    """
+    _, u1, v0, v1 = bounding_rectangle(corners)
+    front = [v for u, v in corners if u > u1 - ROUNDING_MM]
+    for width in (min(layout.lead_width, v1 - v0), max(front) - min(front)):  # aslant ends take a lead as wide as they
+        half = width / 2
+        low, high = min(front) + half, max(front) - half
+        v = min(max(lane, low), high) if high >= low else min(max((low + high) / 2, v0 + half), v1 - half)
+        (right, first), (left, last) = (_front_at(corners, at) for at in (v - half, v + half))
+        covered = [corners[(first + 1 + k) % len(corners)] for k in range((last - first) % len(corners))]
+        if width > layout.trace_width - ROUNDING_MM and all(
+            turning(right, left, one) <= ROUNDING_MM for one in covered
+        ):
+            break
+    else:
+        raise InputError(
+            f"segment.film.electrodes: '{name}' has no end towards the cable that a lead of {layout.trace_width:g} mm "
+            "can leave; change its corners, or let the cable leave elsewhere (fabrication.cable_exit)"
+        )
     if abs(v - lane) > ROUNDING_MM and layout.body_end - u1 < layout.tab_gap:
         raise InputError(
             f"segment.film.electrodes: '{name}' ends {layout.body_end - u1:.3g} mm from the edge of the film and "
             f"beside the tab; its lead needs {layout.tab_gap:g} mm there, so make it smaller or let the cable leave "
-            "elsewhere"
+            "elsewhere (fabrication.cable_exit)"
         )
-    return (u1, v)
+    kept = [corners[(last + 1 + k) % len(corners)] for k in range((first - last - 1) % len(corners) + 1)]
+    return kept, [(right, left), ((u1, v - half), (u1, v + half))], (u1, v)
+
+
+def _front_at(corners: Sequence[Point], v: float) -> tuple[Point, int]:
+    """The point of an outline that lies farthest towards the cable at a height v, and the number of its edge."""
+    found = []
+    for number, (a, b) in enumerate(zip(corners, [*corners[1:], corners[0]], strict=True)):
+        if a[1] < b[1] and a[1] - ROUNDING_MM <= v <= b[1] + ROUNDING_MM:
+            share = min(max((v - a[1]) / (b[1] - a[1]), 0.0), 1.0)
+            found.append((a[0] + share * (b[0] - a[0]), number))
+    u, number = max(found)
+    return (u, v), number
 
 
 def _array_metals(layout: FilmLayout) -> tuple[Metal, ...]:
@@ -254,7 +286,10 @@ def _refuse_near_electrodes(layout: FilmLayout) -> None:
     for (one, first), (other, second) in combinations(layout.electrodes.items(), 2):
         apart = max(first[0] - second[1], second[0] - first[1], first[2] - second[3], second[2] - first[3])
         if apart < least - ROUNDING_MM:
-            where, advice = "segment.film.electrodes", ""
+            pieces = [convex_pieces(layout.outlines[name]) for name in (one, other)]
+            apart = min(polygon_gap_mm(a, b) for a in pieces[0] for b in pieces[1])
+        if apart < least - ROUNDING_MM:
+            where, advice = "segment.film.electrodes", "; move them apart, or state fabrication.trace_gap_mm"
             if layout.lattice is not None:
                 margin = layout.lattice.margin
                 where, advice = f"array.electrode_margin_mm = {margin:g}", f"; give {margin + (least - apart) / 2:.3g}"

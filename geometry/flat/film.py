@@ -4,11 +4,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from geometry.array.layout import Rectangle
+from geometry.electrode_outlines import electrode_corners
 from geometry.fabrication.device import Device, ExitFrame, exit_frame, held_layer_names
 from geometry.fabrication.parameters import Fabrication
 from geometry.flat.escape import Lattice
 from geometry.flat.paths import column_count
 from geometry.parameters import Electrode, Segment
+from geometry.polygons import Point, bounding_rectangle
 
 METAL_EDGE_MM = 0.15
 """Bare film between metal and the edge of the film (judged here)."""
@@ -24,20 +26,26 @@ They are as long as flat flexible cables are plugged, 2 to 6 mm (thrive.cn, tabl
 class FilmLayout:
     """Sizes of the film in mm, in the frame of the cable. flange : film beyond the footprint that the frame clamps.
 
-    electrodes : name -> u0, u1, v0, v1. lattice : how those of an array are led out, None for one segment.
+    outlines : name of an electrode -> corners, counter-clockwise. lattice : how those of an array are led out, None
+    for one segment.
     half_tab : half the width of the tab. tab_end : u where its head begins.
     trace_width, trace_gap : least ones. pad_pitch : from pad to pad.
     """
 
     frame: ExitFrame
     flange: float
-    electrodes: dict[str, Rectangle]
+    outlines: dict[str, tuple[Point, ...]]
     lattice: Lattice | None
     half_tab: float
     tab_end: float
     trace_width: float
     trace_gap: float
     pad_pitch: float
+
+    @cached_property
+    def electrodes(self) -> dict[str, Rectangle]:
+        """Name -> rectangle u0, u1, v0, v1 around each electrode."""
+        return {name: bounding_rectangle(corners) for name, corners in self.outlines.items()}
 
     @property
     def pad_count(self) -> int:
@@ -136,15 +144,16 @@ class FilmLayout:
 def film_layout(device: Device, fabrication: Fabrication) -> FilmLayout:
     """The layout of the film of a device that has passed its checks."""
     stack, frame = device.stack, exit_frame(device.stack, fabrication)
-    electrodes = _electrode_rectangles(stack, frame)
+    outlines = _outlines(stack, frame)
     width, gap = fabrication.trace_width_mm, fabrication.trace_gap_mm
     margin = device.layout.array.electrode_margin_mm
-    least = 2 * METAL_EDGE_MM + len(electrodes) * TAB_GAP_SHARE * gap + (len(electrodes) + 1) * width
+    least = 2 * METAL_EDGE_MM + len(outlines) * TAB_GAP_SHARE * gap + (len(outlines) + 1) * width
+    boxes = {name: bounding_rectangle(corners) for name, corners in outlines.items()}
     return FilmLayout(
         frame=frame,
         flange=fabrication.film_flange_mm if "film" in held_layer_names(stack) else 0.0,
-        electrodes=electrodes,
-        lattice=Lattice(electrodes, width, gap, margin) if device.is_array else None,
+        outlines=outlines,
+        lattice=Lattice(boxes, width, gap, margin) if device.is_array else None,
         half_tab=(fabrication.tab_width_mm or max(LEAST_TAB_WIDTH_MM, least)) / 2,
         tab_end=frame.along / 2 + fabrication.tab_length_mm,
         trace_width=width,
@@ -153,12 +162,8 @@ def film_layout(device: Device, fabrication: Fabrication) -> FilmLayout:
     )
 
 
-def _electrode_rectangles(stack: Segment, frame: ExitFrame) -> dict[str, Rectangle]:
-    """Name -> rectangle of each electrode in the frame; one electrode on the whole footprint where none is stated."""
+def _outlines(stack: Segment, frame: ExitFrame) -> dict[str, tuple[Point, ...]]:
+    """Name -> corners of each electrode in the frame; one electrode on the whole footprint where none is stated."""
     whole = Electrode(name="film", size_mm=(stack.length_mm, stack.width_mm))
-    return {one.name: frame.rectangle_in_frame(_electrode_rectangle(one)) for one in stack.film.electrodes or (whole,)}
-
-
-def _electrode_rectangle(electrode: Electrode) -> Rectangle:
-    (x, y), (length, width) = electrode.center_mm, electrode.size_mm
-    return (x - length / 2, x + length / 2, y - width / 2, y + width / 2)
+    every = stack.film.electrodes or (whole,)
+    return {one.name: tuple(map(frame.point_in_frame, electrode_corners(one))) for one in every}

@@ -30,7 +30,7 @@ def film_pattern(
         marks=(
             *(metal.outline for metal in every),
             panel.edge_label("TOP: this face towards the dot"),
-            *(_name_labels(layout, every) if device.is_array else ()),
+            *_name_labels(layout, every),
         ),
         dimensions=(*panel.dimensions, *_film_dimensions(layout)),
         kerf_mm=fabrication.kerf_mm,
@@ -41,13 +41,16 @@ def _name_labels(layout: FilmLayout, every: tuple[Metal, ...]) -> list[Label]:
     """Labels with the name of each electrode and the number of each pad, on the layer that is not cut."""
     u = layout.tab_end + layout.taper + PAD_LENGTH_MM / 2
     pads = [
-        Label("DIMENSION", (u, layout.pads[layout.pad_count - one.pad]), f"{one.pad}", NAME_HEIGHT_MM) for one in every
+        Label("DIMENSION", (u, layout.pads[layout.pad_count - one.pad]), f"{one.pad} {_short(one)}", NAME_HEIGHT_MM)
+        for one in every
     ]
     middles = [((one.rect[0] + one.rect[1]) / 2, (one.rect[2] + one.rect[3]) / 2) for one in every]
-    tops = [
-        (one.name.removeprefix("segment-"), at) for one, at in zip(every, middles, strict=True) if one.face == "top"
-    ]
+    tops = [(_short(one), at) for one, at in zip(every, middles, strict=True) if one.face == "top"]
     return [*pads, *(Label("DIMENSION", at, name, NAME_HEIGHT_MM) for name, at in tops)]
+
+
+def _short(metal: Metal) -> str:
+    return metal.name.removeprefix("segment-")
 
 
 def device_count(fabrication: Fabrication) -> int:

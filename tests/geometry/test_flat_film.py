@@ -11,7 +11,7 @@ from geometry.flat.electrodes import stray_area_mm2
 from geometry.flat.flat_kit import flat_kit
 from geometry.flat.pattern import Label
 from geometry.parameters import Electrode, Film
-from geometry.polygons import polygon_gap_mm, shared_area_mm2
+from geometry.polygons import polygon_gap_mm, shared_area_mm2, signed_area_mm2
 from tests.cases import for_each
 
 EXITS = ("+x", "-x", "+y", "-y")
@@ -58,6 +58,28 @@ def test_active_film_is_where_both_faces_have_metal(make_segment, way):
     assert stray_area_mm2(kit.metals) < 0.05 * 2 * 1.8 * 0.8
 
 
+@for_each("way", EXITS)
+def test_metal_of_a_circle_and_a_polygon_is_electrode_and_lead(make_segment, way):
+    """Area inside the outline by inclusion and exclusion; pads carry number and name."""
+    round_one = Electrode(name="disc", shape="circle", center_mm=(0.0, 0.6), radius_mm=0.5)
+    bent = ((-1.0, -1.1), (1.0, -1.1), (1.0, -0.3), (0.6, -0.3), (0.6, -0.8), (-1.0, -0.8))
+    both = (round_one, Electrode(name="bent", shape="polygon", corners_mm=bent))
+    turned = Fabrication(cable_exit=way, tab_width_mm=3.0)
+    if way.endswith("y"):
+        both = (round_one.model_copy(update={"center_mm": (0.6, 0.0)}), Electrode(name="bent", shape="polygon",
+            corners_mm=tuple((y, x) for x, y in bent)))  # fmt: skip
+    kit = flat_kit(lone_device(make_segment(film=Film(thickness_um=28.0, electrodes=both))), turned)
+    areas = {"disc": pi * 0.25, "bent": 2.0 * 0.3 + 0.4 * 0.5}
+    for metal in kit.metals[:-1]:
+        electrode = sum(signed_area_mm2(piece) for piece in metal.plates)
+        assert electrode == pytest.approx(areas[metal.name])
+        lead = sum(signed_area_mm2(piece) for piece in metal.lead)
+        both_mm2 = sum(shared_area_mm2(one, piece) for one in metal.lead for piece in metal.plates)
+        assert metal.outline.area_mm2 == pytest.approx(electrode + lead - both_mm2)
+    labels = {mark.text for mark in by_name(kit)["film"].marks if isinstance(mark, Label)}
+    assert {f"{metal.pad} {metal.name}" for metal in kit.metals} < labels
+
+
 def corners(rect):
     u0, u1, v0, v1 = rect
     return ((u0, v0), (u1, v0), (u1, v1), (u0, v1))
@@ -97,7 +119,7 @@ def test_metal_ends_before_the_edge_of_the_film(make_segment, way):
 def test_words_run_along_the_panel(make_segment):
     for way, upright in (("+x", False), ("-x", False), ("+y", True), ("-y", True)):
         marks = by_name(flat_kit(lone_device(make_segment()), Fabrication(cable_exit=way)))["film"].marks
-        assert [mark.upright for mark in marks if isinstance(mark, Label)] == [upright]
+        assert {mark.upright for mark in marks if isinstance(mark, Label)} == {upright}
 
 
 def test_tab_points_to_the_cable(segment):
