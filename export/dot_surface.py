@@ -66,6 +66,8 @@ def in_segment_frame(dot_shape: DotShape, points_mm: Floats, origin_mm: Floats) 
 
 def _meridian(dot_shape: DotShape, tip_mm: float, count: int) -> Floats:
     """Meridian (p, 2) from a tip at z = tip_mm to the plate, radius and z in mm."""
+    if dot_shape.profile is not None:
+        return dot_shape.profile.meridian_mm(count)
     radius, height = dot_shape.radius_mm, dot_shape.height_mm - tip_mm
     opening = np.arccos(1 - min(height, radius) / radius)
     angle = np.linspace(0.0, opening, count)

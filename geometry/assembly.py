@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.dot import DotShape
+from geometry.dot_profile import DotProfile
 from geometry.parameters import Segment
 from geometry.part_checks import covers_footprint
 from geometry.solids import Part, labelled_part, layer_solids, sphere, upright_box, upright_cylinder
@@ -59,14 +60,29 @@ def cap_solid(radius_mm: float, height_mm: float, foot_mm: float) -> Any:
 
 
 def _dot_in_cell(dot_shape: DotShape, tip: Floats, low_y: float, high_y: float) -> Any:
-    """One cap on its foot, or one ridge over the whole plate, in the dot frame."""
+    """One cap on its foot, one ridge over the whole plate, or a profile, in the dot frame."""
     from build123d import Pos
 
     if dot_shape.kind == "ridge":
         return _ridge(dot_shape, low_y, high_y)
+    if dot_shape.profile is not None:
+        return _revolved(dot_shape.profile)
     height = dot_shape.height_mm - tip[2]
     cap = cap_solid(dot_shape.radius_mm, height, max(0.0, height - dot_shape.radius_mm))
     return Pos(*tip) * cap
+
+
+MERIDIAN_POINTS = 40
+
+
+def _revolved(profile: DotProfile) -> Any:
+    """A measured dot: a spline through points of its meridian, turned about its axis."""
+    from build123d import Axis, Edge, Face, Solid, Vector, Wire
+
+    points = [Vector(radius, 0.0, depth) for radius, depth in profile.meridian_mm(MERIDIAN_POINTS)]
+    base = Vector(0.0, 0.0, profile.height_mm)
+    edges = [Edge.make_spline(points), Edge.make_line(points[-1], base), Edge.make_line(base, points[0])]
+    return Solid.revolve(Face(Wire(edges)), 360.0, Axis.Z)
 
 
 def _ridge(dot_shape: DotShape, low_y: float, high_y: float) -> Any:

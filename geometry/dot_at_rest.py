@@ -8,6 +8,7 @@ import numpy as np
 from foundation.errors import InputError
 from geometry.dot import DotShape, Floats
 from geometry.dot_cell import cell_tips, single_tip
+from geometry.dot_profile import read_profile
 from geometry.dot_size import DotSize, dot_size
 from geometry.parameters import Dot, Segment
 from geometry.part_checks import refuse_out_of_plane
@@ -127,7 +128,10 @@ def resolve_dot(dot: Dot, segment: Segment) -> DotShape:
     _refuse_out_of_plane(dot, segment)
     size = DotSize(0.0, 0.0, 0.0) if dot.shape == "plate" else dot_size(dot)
     tips, height = cell_tips(dot, size.height_mm) if dot.shape == "cap" else single_tip(dot, size.height_mm)
-    turned = DotShape(dot.shape, size.radius_mm, height, tips, np.zeros(3), tilt_rotation(dot.tilt_deg))
+    profile = None if dot.profile_csv is None else read_profile(dot.profile_csv)
+    if profile is not None and any(dot.tilt_deg):
+        raise InputError(f"dot.tilt_deg = {list(dot.tilt_deg)}: dot.shape = 'profile' stands upright; must be [0, 0]")
+    turned = DotShape(dot.shape, size.radius_mm, height, tips, np.zeros(3), tilt_rotation(dot.tilt_deg), profile)
     origin = rest_origin(turned, segment, dot.offset_mm) + np.array([0.0, 0.0, dot.gap_mm])
     rest = replace(turned, origin_mm=origin)
     refuse_overlap(rest, segment, dot)
@@ -139,8 +143,8 @@ def _refuse_out_of_plane(dot: Dot, segment: Segment) -> None:
     if segment.section != "plane-strain":
         return
     plane = "segment.section = 'plane-strain' has nothing that varies over y"
-    if dot.shape == "cap":
-        raise InputError(f"dot.shape = 'cap': {plane}; use dot.shape = 'ridge' or 'plate'")
+    if dot.shape in ("cap", "profile"):
+        raise InputError(f"dot.shape = '{dot.shape}': {plane}; use dot.shape = 'ridge' or 'plate'")
     if dot.cell is not None:
         raise InputError(f"dot.cell = '{dot.cell}': {plane}; leave the cell out")
     refuse_out_of_plane(segment, "dot.offset_mm[1]", dot.offset_mm[1])

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 from foundation.errors import InputError
 from geometry.braille_standards import BrailleStandard, standard
-from geometry.parameters import Dot
+from geometry.dot_profile import read_profile
+from geometry.parameters import SIZED_DOTS, Dot
 
 DEFAULT_STANDARD = "marburg-medium"
 SIZE_KEYS = ("base_diameter_mm", "height_mm", "radius_mm")
@@ -24,6 +25,8 @@ def dot_standard(dot: Dot) -> BrailleStandard | None:
 
     InputError where both a standard and sizes are stated.
     """
+    if dot.shape not in SIZED_DOTS:
+        return None
     given = [name for name in SIZE_KEYS if getattr(dot, name) is not None]
     if dot.standard is None:
         return None if given else standard(DEFAULT_STANDARD)
@@ -36,7 +39,13 @@ def dot_standard(dot: Dot) -> BrailleStandard | None:
 
 
 def dot_size(dot: Dot) -> DotSize:
-    """The sizes of a cap or ridge. InputError for sizes that are missing, contradict each other or are not fixed."""
+    """The sizes of a cap, ridge or profile (radius of its tip).
+
+    InputError for sizes that are missing, contradict each other or are not fixed.
+    """
+    if dot.profile_csv is not None:
+        profile = read_profile(dot.profile_csv)
+        return DotSize(profile.tip_radius_mm, profile.height_mm, 0.0)
     chosen = dot_standard(dot)
     if chosen is not None:
         return dot_size_from_base(chosen.nominal_mm("base_diameter_mm"), chosen.nominal_mm("height_mm"))

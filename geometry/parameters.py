@@ -251,14 +251,19 @@ class Segment(Table):
     bonds: tuple[Bond, ...] = Field((), description="compliant bonds; none: perfect")
 
 
-ROUND = ActsWith(shape=("cap", "ridge"))
+SIZED_DOTS = ("cap", "ridge")
+"""Dots that radius and height describe."""
+ROUND = ActsWith(shape=SIZED_DOTS)
 
 
 class Dot(Table):
     """The rigid object that is pressed onto the segment."""
 
-    shape: Literal["cap", "ridge", "plate"] = Field(
-        "cap", description="cap: spherical, on a plate; ridge: a cylinder along y; plate: flat"
+    shape: Literal["cap", "ridge", "plate", "profile"] = Field(
+        "cap", description="cap: spherical, on a plate; ridge: a cylinder along y; plate: flat; profile: measured"
+    )
+    profile_csv: Annotated[str | None, ActsWith(needed=True, shape=("profile",))] = Field(
+        None, description="CSV file with radius_mm and height_mm (or _um), from the tip to the plate"
     )
     standard: Annotated[str | None, ROUND] = Field(None, description="Braille standard whose nominal sizes are used")
     base_diameter_mm: Annotated[Positive | None, ROUND] = Field(None, description="with height_mm: explicit size")

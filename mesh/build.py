@@ -60,6 +60,7 @@ def mesh_key(segment: Segment, dot: DotShape, options: MeshOptions, planes: Plan
         "layers": [segment.medium1.thickness_mm, segment.medium2.thickness_mm],
         "effector": effector and effector.model_dump(exclude={"material"}),
         "dot": [dot.kind, dot.radius_mm, *(np.round(a, 9).tolist() for a in _dot_arrays(dot))],
+        **({} if dot.profile is None else {"profile": repr(dot.profile)}),
         "options": options.model_dump(exclude={"timeout_s", "file", "symmetry", "accuracy_percent"}),
         "planes": planes,
     }

@@ -98,7 +98,7 @@ def sizing_field(outline: StackOutline, dot: DotShape, options: MeshOptions) -> 
     widest = 2 * max(outline.half_x, outline.half_y)
     overlap = sqrt(2 * REFINED_DEPTH_MM / curvature) if curvature else widest
     reach = min(overlap, widest) + options.contact_element_size_mm
-    kind = "plate" if curvature == 0.0 else ("cap" if dot.kind == "plate" else dot.kind)
+    kind = "plate" if curvature == 0.0 else ("ridge" if dot.kind == "ridge" else "cap")
     return Sizing(outline, options.element_size_mm, options.contact_element_size_mm, film_mm, centers, reach, kind)
 
 

@@ -15,8 +15,9 @@ from softdot.config.toml import leaves, parse_toml
 
 THICKNESSES = {"medium1": "thickness_mm", "film": "thickness_um", "medium2": "thickness_mm"}
 """Layer -> its key of the thickness; a segment that states all of them has a stack of its own."""
-DOT_SIZES = {"standard", "base_diameter_mm", "height_mm", "radius_mm"}
+DOT_SIZES = {"standard", "base_diameter_mm", "height_mm", "radius_mm", "profile_csv"}
 """Keys that give a dot a size; with any of them the standard of the default dot is not taken."""
+UNSIZED_DOTS = ("plate", "profile")
 
 
 @cache
@@ -36,7 +37,7 @@ def with_default_design(tables: Mapping[str, Any]) -> dict[str, Any]:
         filled = {name: {**default[name], **_table(segment, name)} for name in THICKNESSES}
         wrong = {name: table for name, table in segment.items() if not isinstance(table, dict) and name in THICKNESSES}
         whole["segment"] = {"effector": default["effector"], **segment, **filled, **wrong}
-        if dot.get("shape") != "plate" and not DOT_SIZES & dot.keys():
+        if dot.get("shape") not in UNSIZED_DOTS and not DOT_SIZES & dot.keys():
             whole["dot"] = dot = {"standard": default_design()["dot"]["standard"], **dot}
     if segment.get("section") == "plane-strain" and "shape" not in dot:
         whole["dot"] = {"shape": "ridge", **dot}  # the default's cap has no slice
@@ -52,7 +53,7 @@ def keys_from_default(tables: Mapping[str, Any], config: Mapping[str, Any]) -> t
     absent = (key for key, _ in leaves(default_design()) if _value_at(tables, key) is None)
     kept = [key for key in absent if _value_at(config, key) is not None or key == standard]
     dot = config.get("dot", {})
-    if dot.get("shape") == "plate" or any(dot.get(size) is not None for size in DOT_SIZES):
+    if dot.get("shape") in UNSIZED_DOTS or any(dot.get(size) is not None for size in DOT_SIZES):
         kept = [key for key in kept if key != standard or dot.get("standard") is not None]
     return tuple(".".join(key) for key in kept)
 

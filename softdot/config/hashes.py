@@ -24,8 +24,8 @@ def config_hash(config: Config) -> str:
 
 
 def input_hash(config: Config) -> str:
-    """SHA-256, in hexadecimal, of a configuration and of the waveform and mesh files that it names: of all that a user
-    states of a press.
+    """SHA-256, in hexadecimal, of a configuration and of the files of waveform, mesh and profile that it names: of all
+    that a user states of a press.
     """
     waveform = config.press.waveform
     file = Path(waveform.file) if waveform is not None and waveform.file is not None else None
@@ -34,4 +34,6 @@ def input_hash(config: Config) -> str:
         from mesh.files.user_mesh import file_contents
 
         content += file_contents(config.mesh.file)
+    if config.dot.profile_csv is not None and Path(config.dot.profile_csv).is_file():
+        content += Path(config.dot.profile_csv).read_bytes()
     return hashlib.sha256(config_hash(config).encode() + content).hexdigest()

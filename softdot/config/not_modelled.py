@@ -24,9 +24,9 @@ def _entry(what: str, instead: str, words: str, under: str = "") -> NotModelled:
 
 NOT_MODELLED = (
     _entry(
-        "round electrodes, or of any outline",
-        "electrodes are rectangles: center_mm and size_mm",
-        "diameter radius shape round circle circular ring polygon",
+        "rings, or electrodes with holes",
+        "electrodes are rectangles, circles (radius_mm) and polygons (corners_mm)",
+        "diameter round circular ring annulus hole",
         "segment.film.electrodes",
     ),
     _entry(
@@ -35,8 +35,8 @@ NOT_MODELLED = (
     _entry("a curved base", "the base and all layers are flat", "curved curvature bent"),
     _entry(
         "a dot from a STEP or STL file, or a scanned one",
-        "the dot is a cap, a ridge or a plate",
-        "step stl file scan scanned mesh profile heightmap",
+        "the dot is a cap, a ridge, a plate, or a profile over its radius (profile_csv)",
+        "step stl file scan scanned mesh heightmap",
         "dot",
     ),
     _entry(
@@ -83,8 +83,8 @@ def not_modelled(word: str, under: str = "") -> str:
 
     under : the dotted key of its table.
 
-    >>> not_modelled("radius_mm", "segment.film.electrodes[0]")
-    'not modelled: round electrodes, or of any outline; electrodes are rectangles: center_mm and size_mm'
+    >>> not_modelled("thickness_um", "segment.film.electrodes[0]")
+    'not modelled: thick or stiff electrodes; electrodes have no thickness'
     """
     parts = set(re.split(r"[^a-z0-9]+", word.lower()))
     for one in NOT_MODELLED:

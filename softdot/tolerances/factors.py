@@ -1,5 +1,6 @@
 """Property errors of a component as factors of the configuration: a modulus or a thickness off its nominal value."""
 
+from geometry.parameters import SIZED_DOTS
 from softdot.config.schema import Config
 from solve.mechanisms import Mechanism
 from solve.mechanisms.layers.property_error import PROPERTY_ERROR
@@ -37,7 +38,7 @@ def has_component(config: Config, component: str) -> bool:
     """Whether a configuration has a component that FACTORS names, with sizes of its own."""
     if component == "effector":
         return config.segment.effector is not None
-    return component != "dot" or config.dot.shape != "plate"
+    return component != "dot" or config.dot.shape in SIZED_DOTS
 
 
 def _components(config: Config) -> list[str]:

@@ -9,7 +9,7 @@ from typing import Any
 
 from geometry.dot_size import dot_size, dot_size_from_base, dot_standard
 from geometry.fabrication.parameters import cast_components, sheet_components
-from geometry.parameters import Dot, Segment
+from geometry.parameters import SIZED_DOTS, Dot, Segment
 from geometry.stack import Layer, layers
 from softdot.config.schema import Config
 from softdot.tolerances.factors import factor_key
@@ -169,7 +169,7 @@ def _film(config: Config) -> list[Tolerance]:
 def _dot(config: Config) -> list[Tolerance]:
     """Tolerances of the dot's size. A higher dot on a plate that stops at the same height is also pressed in deeper."""
     dot = config.dot
-    if dot.shape == "plate":
+    if dot.shape not in SIZED_DOTS:  # a plate has no size, that of a profile was measured
         return []
     size = dot_size(dot)
     deeper = {"press.indentation_mm": 1.0} if config.press.force_N is None else {}

@@ -1,7 +1,7 @@
 """Signed distance to the rigid dot, with its gradient and Hessian, exact for every primitive.
 
-The dot is the union of balls (or cylinders along y), their cylindrical feet and the half-space of the plate;
-outside it the distance to a union is the smallest distance to a member.
+The dot is the union of balls (or cylinders along y, or a profile), their cylindrical feet and the half-space of the
+plate; outside it the distance to a union is the smallest distance to a member.
 """
 
 from dataclasses import dataclass
@@ -10,6 +10,7 @@ import numpy as np
 
 from foundation.arrays import Floats
 from geometry.dot import DotShape
+from solve.terms.profile_distance import profile_distance
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,10 @@ class RigidDot:
         return gap, np.tile([0.0, 0.0, -1.0], (len(local), 1)), np.zeros((len(local), 3, 3))
 
     def _bump(self, local: Floats, tip: Floats) -> tuple[Floats, Floats, Floats]:
-        """One ball, or one cylinder along y, with its foot: the distance to its axis minus the radius."""
+        """One ball, or one cylinder along y, with its foot: the distance to its axis minus the radius; or a profile."""
+        if self.shape.profile is not None:
+            gap, normal, hessian = profile_distance(self.shape.profile, local * self.unit_mm)
+            return gap / self.unit_mm, normal, hessian * self.unit_mm
         radius = self.shape.radius_mm / self.unit_mm
         free = np.ones((len(local), 3))  # directions in which the distance to the axis varies
         middle = np.add(tip, [0.0, 0.0, radius])

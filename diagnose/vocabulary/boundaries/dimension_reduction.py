@@ -5,12 +5,13 @@ from collections.abc import Iterator
 from diagnose.forward import Candidate, Coordinate
 from diagnose.vocabulary.base import Vocabulary, register
 from diagnose.vocabulary.scene import Scene
+from geometry.parameters import SIZED_DOTS
 from solve.mechanisms.boundaries.dimension_reduction import DIMENSION_REDUCTION
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Yield candidates for all but plates."""
-    if scene.model.dot.shape != "plate":
+    """Yield candidates for caps and ridges."""
+    if scene.model.dot.shape in SIZED_DOTS:
         yield _dimension()
 
 

@@ -9,6 +9,7 @@ from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.vocabulary.base import GIVES_WAY, STIFFNESS, Vocabulary, register
 from diagnose.vocabulary.scene import CouponScene, Scene
 from geometry.dot_at_rest import resolve_dot
+from geometry.parameters import SIZED_DOTS
 from geometry.stack import layers
 from solve.mechanisms.layers.property_error import PROPERTY_ERROR
 
@@ -27,7 +28,7 @@ def of_segment(scene: Scene) -> Iterator[Candidate]:
     for layer in layers(scene.model.segment):
         factors = ("modulus", "thickness", "d31") if layer.name == "film" else ("modulus", "thickness")
         yield property_error(layer.name, factors)
-    if scene.model.dot.shape != "plate":
+    if scene.model.dot.shape in SIZED_DOTS:
         touches = scene.depth_mm >= resolve_dot(scene.model.dot, scene.model.segment).height_mm
         yield property_error("dot", ("radius", "height") if touches else ("radius",))
 

@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import Field
 
 from geometry.dot_at_rest import resolve_dot
-from geometry.parameters import Positive
+from geometry.parameters import SIZED_DOTS, Positive
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.mechanisms.base import (
     MEDIA,
@@ -41,10 +41,10 @@ ACTS = {"dot": ("radius_factor", "height_factor"), "film": ("modulus_factor", "t
 def switch_on(model: Model, component: str, values: PropertyError) -> Model:
     """The model with this physics at a component. ValueError for a factor on what the component does not have."""
     acts = ACTS.get(component, ("modulus_factor", "thickness_factor"))
-    flat = component == "dot" and model.dot.shape == "plate"
+    flat = component == "dot" and model.dot.shape not in SIZED_DOTS
     for name, value in values:
         if value != 1.0 and (flat or name not in acts):
-            instead = "a plate has neither radius nor height" if flat else f"it takes {' and '.join(acts)}"
+            instead = f"a {model.dot.shape} has neither radius nor height" if flat else f"it takes {' and '.join(acts)}"
             raise ValueError(f"parameters.{name} = {value:g}: acts not on '{component}'; {instead}")
     if component == "dot":
         return with_dot(model, **_scaled_dot(model, values.radius_factor, values.height_factor))
