@@ -109,9 +109,7 @@ def _refuse_other_courses(radius: Floats, height: Floats, what: str) -> None:
         raise InputError(f"{what}: begins at a radius of {radius[0]:g} mm, must begin at the tip, 0")
     back = np.flatnonzero(np.diff(radius) <= 0.0)
     if len(back):
-        raise InputError(
-            f"{what} row {back[0] + 3}: the radius of {radius[back[0] + 1]:g} mm is not above the last one"
-        )
+        raise InputError(f"{what} row {back[0] + 3}: a radius of {radius[back[0] + 1]:g} mm is not above the last one")
     rise = np.flatnonzero(np.diff(height) > 0.0)
     if len(rise):
         raise InputError(

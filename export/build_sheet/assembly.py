@@ -167,9 +167,11 @@ def _frame_step(contents: Contents) -> WorkStep:
         "Lower the stack into the opening, its tab into the channel, with the same gap on all sides.",
     ]
     if contents.part("frame-ring") is not None:
+        even = f", so that it fills the gap of {contents.rim_gap_mm:.2g} mm evenly: it is the elastic rim"
+        even = even if contents.device.stack.boundary == "elastic" else ""
         actions += [
-            f"Draw a thin line of flexible adhesive around {_held_text(contents)}, which the ring holds, and lower "
-            "frame-ring over it.",
+            f"Draw a thin line of {contents.side_glue} around {_held_text(contents)}, which the ring holds{even}, and "
+            "lower frame-ring over it.",
             "Put in both screws, tighten them in turn until the ring lies flat, and wipe off what is pressed out.",
         ]
     return WorkStep("Set the stack into the frame", tuple(actions), ("section",))
@@ -243,8 +245,8 @@ def _glue_actions(contents: Contents) -> list[str]:
     """Action that glues medium 2 to the walls of the opening, where the body of the frame holds it."""
     if "medium2" not in held_layer_names(contents.device.stack):
         return []
-    fills = f"it fills the gap of {contents.fabrication.glue_gap_mm:g} mm to medium 2"
-    return [f"Wet the walls of the opening thinly with flexible adhesive: {fills}."]
+    fills = f"it fills the gap of {contents.rim_gap_mm:.2g} mm to medium 2"
+    return [f"Wet the walls of the opening thinly with {contents.side_glue}: {fills}."]
 
 
 def _upper_layers_step(contents: Contents, title: str) -> WorkStep:
@@ -276,8 +278,8 @@ def _upper_layers_step(contents: Contents, title: str) -> WorkStep:
     if held:
         actions.insert(
             1,
-            f"Wet the walls of the {'windows' if windows else 'window'} thinly with flexible adhesive beside {held}: "
-            f"it fills the gap of {contents.fabrication.glue_gap_mm:g} mm there.",
+            f"Wet the walls of the {'windows' if windows else 'window'} with {contents.side_glue} beside {held}: it "
+            f"fills the gap of {contents.rim_gap_mm:.2g} mm there.",
         )
         actions.append("Wipe off what rises between wall and layers and let it cure as its maker says.")
     picture = f"assembly-{3 + bool(ring)}"  # after medium 2, film and ring

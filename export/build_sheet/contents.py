@@ -7,16 +7,16 @@ from typing import Any
 import numpy as np
 
 from export.printability import Printability
-from geometry.fabrication.device import Device
+from geometry.fabrication.device import Device, rim_gap_mm
 from geometry.fabrication.frame_layout import FrameLayout, frame_layout
 from geometry.fabrication.kit import SolidKit, jig_device, stacked_tops
-from geometry.fabrication.parameters import Fabrication
+from geometry.fabrication.parameters import Fabrication, release_note
 from geometry.fabrication.part import FabricationPart
 from geometry.flat.flat_kit import FlatKit
-from geometry.flat.pattern import FlatPattern
 from geometry.flat.spacers import spaced_layers
 from geometry.parameters import Segment
 from geometry.stack import Box, Disc, Dome, Layer, bodies, layers
+from solve.model import Readout
 
 MEDIUM_NAMES = {"medium1": "medium 1", "medium2": "medium 2"}
 RESIN_G_CM3 = 1.15
@@ -29,7 +29,7 @@ class Contents:
 
     permittivity : relative, of the film. printability : one for each printed part.
     budget : the tolerance budget as it stands in kit.json, None where there is none, and budget_note says why;
-    press : what is pressed, in words. pressed : what the budget is of, in words.
+    readout : the stated amplifier. press : what is pressed, in words. pressed : what the budget is of, in words.
     """
 
     device: Device
@@ -44,6 +44,7 @@ class Contents:
     press: str
     pressed: str
     warnings: tuple[str, ...]
+    readout: Readout | None = None
 
     @property
     def segment(self) -> Segment:
@@ -59,6 +60,21 @@ class Contents:
     def frame(self) -> FrameLayout:
         """Layout of the clamp frame."""
         return frame_layout(self.device, self.fabrication)
+
+    @property
+    def rim_gap_mm(self) -> float:
+        """Glue line beside the layers that are held."""
+        return rim_gap_mm(self.device.stack, self.fabrication)
+
+    @property
+    def has_silicone(self) -> bool:
+        """Whether a part is cast of silicone, on which acrylic adhesive does not hold."""
+        return any(pour.release == release_note("silicone") for pour in self.solid.pours)
+
+    @property
+    def side_glue(self) -> str:
+        """Glue for the sides of held layers."""
+        return "silicone adhesive (such as Sil-Poxy)" if self.has_silicone else "flexible adhesive"
 
     @property
     def layers(self) -> tuple[Layer, ...]:
@@ -106,19 +122,6 @@ def layer_in_sentence(name: str) -> str:
 
 
 @dataclass(frozen=True)
-class Item:
-    """One row of the bill of materials.
-
-    what : to get; amount : how much of it; mass_g : None where it does not matter; used : for what, which file.
-    """
-
-    what: str
-    amount: str
-    mass_g: float | None
-    used: str
-
-
-@dataclass(frozen=True)
 class Component:
     """A layer of the finished device: sizes, volume and mass of one piece, and how many pieces there are."""
 
@@ -129,11 +132,6 @@ class Component:
     size: str
     volume_mm3: float
     mass_mg: float
-
-
-def bill_of_materials(contents: Contents) -> list[Item]:
-    """All that has to be there before the work begins."""
-    return [*_casting_items(contents), *_sheet_items(contents), *_printing_items(contents), *_small_items(contents)]
 
 
 def components(contents: Contents) -> list[Component]:
@@ -164,92 +162,6 @@ def _grooves_text(contents: Contents, name: str) -> str:
     """Words on the grooves of a layer, to follow its size."""
     grooves = contents.device.layout.grooves(name)
     return "".join(f", grooves {one.width_mm:g} mm wide and {one.depth_mm:g} mm deep" for one in grooves)
-
-
-def _casting_items(contents: Contents) -> list[Item]:
-    """Components of every mix; a material that is poured twice stands once."""
-    masses: dict[tuple[str, str], float] = {}
-    for pour in contents.solid.pours:
-        for name, mass in pour.mixed_masses_g:
-            masses[pour.recipe, name] = masses.get((pour.recipe, name), 0.0) + mass
-    pours = {recipe: [p.component for p in contents.solid.pours if p.recipe == recipe] for recipe, _ in masses}
-    return [
-        Item(f"{recipe}, component {name}", "", mass, f"to cast {', '.join(map(layer_title, pours[recipe]))}")
-        for (recipe, name), mass in masses.items()
-    ]
-
-
-def _sheet_items(contents: Contents) -> list[Item]:
-    """Sheets to cut, with the sizes that are needed of each."""
-    sheets: dict[tuple[str, float], list[FlatPattern]] = {}
-    for pattern in contents.flat.patterns:
-        sheets.setdefault((pattern.material, pattern.thickness_mm), []).append(pattern)
-    found = []
-    for (material, thickness), patterns in sheets.items():
-        thick = f"{1e3 * thickness:.3g} µm" if thickness < 0.2 else f"{thickness:.4g} mm"
-        used = ", ".join(pattern.name for pattern in patterns)
-        found.append(Item(f"{material}, {thick}", _pieces_text(patterns), None, f"cut/: {used}"))
-    return found
-
-
-def _pieces_text(patterns: list[FlatPattern]) -> str:
-    """Number of pieces of each size, in mm, in words."""
-    counts: dict[str, int] = {}
-    for pattern in patterns:
-        size = "{:.1f} × {:.1f} mm".format(*pattern.size_mm)
-        counts[size] = counts.get(size, 0) + pattern.count
-    return ", ".join(f"{count} of {size}" for size, count in counts.items())
-
-
-def _printing_items(contents: Contents) -> list[Item]:
-    volume = sum(part.copies * part.volume_mm3 for part in contents.solid.parts) / 1e3
-    count = sum(part.copies for part in contents.solid.parts)
-    kind = "SLA resin" if contents.fabrication.printer == "sla" else "filament"
-    return [Item(kind, f"{volume:.1f} cm³", RESIN_G_CM3 * volume, f"{count} printed parts, supports not counted")]
-
-
-def _small_items(contents: Contents) -> list[Item]:
-    """Screws, pins, contacts, tools and what the moulds need."""
-    made, found = contents.fabrication, []
-    if contents.part("frame-ring") is not None:
-        frame = contents.frame
-        grip = made.floor_mm + frame.ring[-1].top - frame.film_top + frame.film_bottom
-        hole = made.screw_diameter_mm
-        length = f"2, at least {grip + 2:.0f} mm long"
-        found.append(Item(f"screws for {hole:g} mm holes, each with a nut", length, None, "close the frame"))
-    found += [
-        Item(f"dowel pins of {made.pin_diameter_mm:g} mm", "2", None, "registration holes of film, masks and rings"),
-        _contact_item(contents),
-        Item("cable tie, at most 1.5 × 3 mm", "1", None, "holds the tab on the shelf"),
-    ]
-    if contents.solid.pours:
-        found += [
-            Item("acetate film or glass slide", f"{len(contents.solid.pours)}", None, "smooth face under each lid"),
-            Item("sealer and release agent", "", None, "see the pours"),
-            Item("nitrile gloves, cups, stirrers, needle, scale to 0.01 g, vacuum chamber", "", None, "mixing"),
-            Item("weight of 200 g", "1", None, "on the lid"),
-        ]
-    if contents.segment.boundary != "free":
-        gap = f"gap of {made.glue_gap_mm:g} mm"
-        found.append(Item("flexible adhesive, thin", gap, None, "sides of the held layers"))
-    found.append(Item("etch resist and etchant, or silver ink", "", None, "electrodes"))
-    found.append(Item("laser cutter or knife plotter; isopropanol, lint-free cloth, tweezers", "", None, "cutting"))
-    channels = f"{len(contents.flat.metals) - 1}"
-    found.append(Item("shielded cable, voltmeter or amplifier with more than 1 GΩ", channels, None, "read-out"))
-    found.append(Item("calliper or thickness gauge to 0.01 mm, capacitance meter to 1 pF", "", None, "checks"))
-    return found
-
-
-FINEST_CRIMP_PITCH_MM = 2.0
-
-
-def _contact_item(contents: Contents) -> Item:
-    """Contacts of the pads; as the common electrode lies on the other face, a connector needs them on both."""
-    count, pitch = len(contents.flat.metals), contents.fabrication.pad_pitch_mm
-    if pitch >= FINEST_CRIMP_PITCH_MM:
-        return Item("crimp contacts, or copper tape with conductive glue", f"{count}", None, "pads")
-    what = f"ZIF connector, {pitch:g} mm pitch, contacts on both faces, and a stiffener for the head"
-    return Item(what, f"1 of {count} contacts", None, "pads")
 
 
 GAUGE_ADVICE = (

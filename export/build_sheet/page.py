@@ -6,23 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from export.build_sheet.contents import (
-    RESIN_G_CM3,
-    Contents,
-    bill_of_materials,
-    components,
-    gauging,
-    layer_in_sentence,
-    layer_title,
-)
+from export.build_sheet.bill import bill_of_materials
+from export.build_sheet.contents import RESIN_G_CM3, Contents, components, gauging, layer_in_sentence, layer_title
+from export.build_sheet.electrical import capacitance_pF, capacitance_pF_per_mm2, metal_area_mm2, rim_text
 from export.build_sheet.steps import steps
 from export.cut_files.style import STYLES
 from export.page import page_environment
 from export.report import number
 from foundation.files import write_whole_text
-from geometry.flat.electrodes import Metal, stray_area_mm2, stray_areas_mm2
-from geometry.polygons import signed_area_mm2
-from solve.materials.parameters import VACUUM_PERMITTIVITY
+from geometry.flat.electrodes import stray_area_mm2, stray_areas_mm2
 
 SHEET_RESISTANCE_OHM = {"NiAl": 3.0, "silver ink": 0.1}
 """Largest resistance in ohm per square: MSI Piezo Film Sensors Technical Manual, p. 3."""
@@ -48,23 +40,6 @@ def checks(contents: Contents) -> list[Check]:
     ]
 
 
-def capacitance_pF(contents: Contents) -> list[tuple[str, float]]:
-    """Name and capacitance in pF of every top electrode against the common one.
-
-    It is the relative permittivity times area over thickness.
-    """
-    per_mm2 = _capacitance_pF_per_mm2(contents)
-    return [(metal.name, per_mm2 * _area_mm2(metal)) for metal in contents.flat.metals if metal.face == "top"]
-
-
-def _capacitance_pF_per_mm2(contents: Contents) -> float:
-    return 1e9 * VACUUM_PERMITTIVITY * contents.permittivity / (1e-3 * contents.segment.film.thickness_um)
-
-
-def _area_mm2(metal: Metal) -> float:
-    return sum(signed_area_mm2(piece) for piece in metal.plates)
-
-
 @dataclass(frozen=True)
 class RoutedTrace:
     """The trace from an electrode to its pad. face : "top" or "bottom".
@@ -85,7 +60,7 @@ class RoutedTrace:
 
 def traces(contents: Contents) -> list[RoutedTrace]:
     """The traces of all electrodes, in the order of the pads."""
-    stray, per_mm2 = stray_areas_mm2(contents.flat.metals), _capacitance_pF_per_mm2(contents)
+    stray, per_mm2 = stray_areas_mm2(contents.flat.metals), capacitance_pF_per_mm2(contents)
     found = [
         RoutedTrace(
             pad=metal.pad,
@@ -112,6 +87,9 @@ def _printed_part_checks(contents: Contents) -> list[Check]:
         where = ", at its deepest point" if gauge.shape == "dome" else ""
         what = f"depth of each cavity in the mould of {layer_in_sentence(pour.component)}{where}"
         found.append(Check(what, f"{depth:.3f} mm", again))
+    rim = rim_text(contents)
+    if rim is not None:
+        found.append(Check("side stiffness of the rim", rim, "state the shear modulus of your glue, build again"))
     frame = contents.frame
     for label, run in (("frame-body", frame.body), ("frame-ring", frame.ring[-1] if frame.ring else None)):
         if run is not None:
@@ -142,7 +120,7 @@ def _thickness_checks(contents: Contents) -> list[Check]:
 
 def _electrical_checks(contents: Contents) -> list[Check]:
     stray = stray_area_mm2(contents.flat.metals)
-    area = sum(_area_mm2(metal) for metal in contents.flat.metals if metal.face == "top")
+    area = sum(metal_area_mm2(metal) for metal in contents.flat.metals if metal.face == "top")
     more = f", and {100 * stray / area:.2g} % more where leads cross the common electrode" if stray > 1e-9 else ""
     against = "against the common one, 1 kHz, cable subtracted"
     otherwise = "too high: metal is left beside the electrode; too low: a lead is broken or the film is thicker"
@@ -151,7 +129,12 @@ def _electrical_checks(contents: Contents) -> list[Check]:
         what = [(f"capacitance of each of the {len(expected)} electrodes {against}", expected[0][1])]
     else:
         what = [(f"capacitance of electrode '{name}' {against}", value) for name, value in expected]
-    found = [Check(words, f"{value:.3g} pF{more}", otherwise) for words, value in what]
+    rows = {row["label"]: row for row in contents.budget["rows"]} if contents.budget else {}
+    thickness = rows.get("thickness of the film")
+    off = (
+        "" if thickness is None else f" ± {100 * thickness['plus_minus'] / thickness['nominal']:.2g} % by its thickness"
+    )
+    found = [Check(words, f"{value:.3g} pF{off}{more}", otherwise) for words, value in what]
     squares = max(metal.squares for metal in contents.flat.metals)
     most = ", ".join(f"{number(squares * ohm, 2)} Ω for {metal}" for metal, ohm in SHEET_RESISTANCE_OHM.items())
     found += [

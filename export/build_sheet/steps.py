@@ -1,7 +1,9 @@
 """The work step by step, in the order in which it is done."""
 
 from export.build_sheet.assembly import WorkStep, assembly_steps, jig_step
-from export.build_sheet.contents import FINEST_CRIMP_PITCH_MM, GAUGE_ADVICE, Contents, gauging, layer_in_sentence
+from export.build_sheet.bill import FINEST_CRIMP_PITCH_MM
+from export.build_sheet.contents import GAUGE_ADVICE, Contents, gauging, layer_in_sentence
+from export.build_sheet.electrical import wiring
 from geometry.fabrication.casting import Pour
 from geometry.flat.film import METAL_EDGE_MM, PAD_LENGTH_MM
 
@@ -119,11 +121,24 @@ def _film_step(contents: Contents) -> WorkStep:
             "Remove the metal with resist and etchant, or with a laser that spares the film. Use no solvent and stay "
             "below 70 °C.",
             f"Cut the adhesive sheets {_pattern_names(contents, 'adhesive')}. Leave the liners on.",
+            *_adhesion_actions(contents),
             *_spacer_actions(contents),
             "Hold the film only by its panel or its head, because a crease ruins it. Measure its capacitance and the "
             "resistance of its leads now.",
         ),
     )
+
+
+def _adhesion_actions(contents: Contents) -> list[str]:
+    """Which adhesive holds on cured silicone."""
+    if not contents.has_silicone:
+        return []
+    return [
+        "Acrylic adhesive peels off cured silicone. Take tape with a silicone adhesive on the face towards rubber "
+        "(such as 3M 9731, silicone on one side and acrylic on the other, 0.14 mm) and state its thickness as "
+        "fabrication.adhesive_thickness_mm; or treat the rubber with oxygen plasma or a primer for silicone and join "
+        "within half an hour. Peel a scrap first: it must stretch before it lets go.",
+    ]
 
 
 def _spacer_actions(contents: Contents) -> list[str]:
@@ -148,17 +163,15 @@ def _connect_step(contents: Contents) -> WorkStep:
     tops = [metal.name for metal in contents.flat.metals if metal.face == "top"]
     pitch = contents.flat.layout.pad_pitch
     pads = ", ".join(f"'{name}' on the top face" for name in tops) + ", and the common electrode on the other face"
-    wire = "Wire the common electrode to the shield of a short shielded cable and the top to its core. "
     press = "Press the segment by hand ten times to settle the rubber, then go through the checks below."
     if contents.device.is_array:
         pads = "their order stands in the table of the traces, the common electrode is on the other face"
-        wire = "Give each top electrode an amplifier of its own and wire the common electrode to the shields of all. "
         press = "Press every segment by hand ten times to settle the rubber, then go through the checks below."
     return WorkStep(
         "Connect and test",
         (
             f"The pads lie at the end of the tab, {pitch:g} mm apart: {pads}. {_contact_action(pitch)}; do not solder.",
-            f"{wire}Tie the tab loosely down on the shelf.",
+            f"{wiring(contents)}Tie the tab loosely down on the shelf.",
             press,
         ),
     )

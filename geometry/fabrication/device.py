@@ -116,6 +116,8 @@ def _refuse_cut_medium1(layout: ArrayLayout) -> None:
         )
 
 
+RIM_GAPS_MM = 0.05, 1.5
+"""Glue lines of an elastic rim that can be filled evenly (judged here)."""
 LEAST_WEB_MM = 0.2
 """Least rubber under a groove: a thinner web tears when the part is lifted from its mould (judged here)."""
 
@@ -133,11 +135,35 @@ def _refuse_thin_webs(layout: ArrayLayout) -> None:
 
 
 def held_layer_names(segment: Segment) -> set[str]:
-    """Names of the layers whose sides the frame holds."""
+    """Names of the layers whose sides the frame holds; of an elastic rim without the film, which a clamp would hold
+    rigidly: its edge ends in the glue.
+    """
     if segment.boundary == "free":
         return set()
     names = {layer.name for layer in layers(segment)} & set(segment.held_layers)
+    if segment.boundary == "elastic":
+        names -= {"film"}
     return names if covers_footprint(segment) else names - {"effector"}
+
+
+def rim_gap_mm(stack: Segment, fabrication: Fabrication) -> float:
+    """Gap in mm between a held layer and its wall, which glue fills.
+
+    Of an elastic rim it is the thickness at which the glue shears as the rim does, k = G / t (Goland and Reissner,
+    J. Appl. Mech. 11, 1944, A17-A27). InputError for one that cannot be built.
+    """
+    if stack.boundary != "elastic":
+        return fabrication.glue_gap_mm
+    gap = fabrication.rim_glue_modulus_MPa / stack.side_stiffness_N_per_mm3
+    low, high = RIM_GAPS_MM
+    if not low <= gap <= high:
+        least, most = low * stack.side_stiffness_N_per_mm3, high * stack.side_stiffness_N_per_mm3
+        raise InputError(
+            f"fabrication.rim_glue_modulus_MPa = {fabrication.rim_glue_modulus_MPa:g}: a rim of "
+            f"segment.side_stiffness_N_per_mm3 = {stack.side_stiffness_N_per_mm3:g} would be a glue line of {gap:.2g} "
+            f"mm, which cannot be filled evenly; must be between {least:.3g} and {most:.3g}"
+        )
+    return gap
 
 
 CABLE_EXIT_TURNS_DEG = {"+x": 0.0, "+y": 90.0, "-x": 180.0, "-y": 270.0}

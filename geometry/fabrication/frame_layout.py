@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 from geometry.array.layout import Rectangle
-from geometry.fabrication.device import Device, ExitFrame, held_layer_names
+from geometry.fabrication.device import Device, ExitFrame, held_layer_names, rim_gap_mm
 from geometry.fabrication.parameters import Fabrication
 from geometry.flat.film import film_layout
 from geometry.stack import layers
@@ -120,7 +120,7 @@ def _ring_runs(device: Device, held: set[str], frame: ExitFrame, fabrication: Fa
 def _wall_run(name: str, device: Device, held: set[str], frame: ExitFrame, fabrication: Fabrication) -> WallRun:
     """Walls around one layer: one opening for each piece that the grid holds or beside which it clamps the film."""
     layer = next(one for one in layers(device.segment) if one.name == name)
-    gap = fabrication.glue_gap_mm if name in held else fabrication.side_clearance_mm
+    gap = rim_gap_mm(device.stack, fabrication) if name in held else fabrication.side_clearance_mm
     clamps = name == "medium1" and device.layout.is_cut(name) and "film" in device.layout.array.grid_layers
     feet = device.layer_rectangles(name) if device.in_grid(name) or clamps else device.stack_rectangles
     return WallRun(layer.bottom_mm, layer.top_mm, gap, tuple(map(frame.rectangle_in_frame, feet)))

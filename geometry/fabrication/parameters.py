@@ -85,6 +85,11 @@ class Fabrication(Table):
     floor_mm: Size = Field(2.0, description="floor of the clamp frame, of the open base and of the jig")
     side_clearance_mm: Gap = Field(0.3, description="frame: air beside layers that are not held")
     glue_gap_mm: Gap = Field(0.05, description="frame: glue line beside layers that are held")
+    rim_glue_modulus_MPa: Annotated[float, Field(gt=0, le=100)] = Field(
+        0.56,
+        description="shear modulus of the glue beside layers that an elastic rim holds; over side_stiffness_N_per_mm3 "
+        "it is the thickness of the glue line, in place of glue_gap_mm",
+    )
     array: tuple[Count, Count] = Field((1, 1), description="segments of one frame in x and y")
     pitch_mm: Positive | None = Field(
         None,
@@ -111,6 +116,11 @@ class Fabrication(Table):
     kerf_mm: Gap = Field(0.1, description="width of the cut of the laser or knife")
     adhesive_thickness_mm: Size = Field(0.05, description="adhesive sheet between the layers")
     sheet_mm: tuple[Positive, Positive] = Field((100.0, 100.0), description="stock sheet for cutting, x and y")
+
+
+def release_note(kind: str) -> str:
+    """How a mould is made to release a kind of rubber: "silicone" or "urethane"."""
+    return str(_casting_table()["release"][kind])
 
 
 @dataclass(frozen=True)
@@ -177,7 +187,7 @@ def _built_in_recipe(name: str, note: str, row: dict[str, Any]) -> Recipe:
         densities_g_cm3=(row["density_g_cm3"], row["density_g_cm3"]),
         pot_life_min=row["pot_life_min"],
         cure_time_h=row["cure_time_h"],
-        release=_casting_table()["release"][row["release"]],
+        release=release_note(row["release"]),
         source=f"{row['source']} (confidence {row['confidence']})",
     )
 

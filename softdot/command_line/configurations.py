@@ -19,6 +19,7 @@ def add_check(commands: Any) -> None:
     )
     check.add_argument("config", metavar="CONFIG.toml", help="the configuration to check")
     add_set(check)
+    check.add_argument("--kit", action="store_true", help="find what softdot kit would refuse, too")
     check.add_argument("--json", action="store_true", help="print the answer as JSON to standard output")
     check.add_argument("-q", "--quiet", action="store_true", help="print only mistakes")
 

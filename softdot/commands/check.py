@@ -14,7 +14,7 @@ FORMAT = "softdot-check/1"
 
 def command(chosen: Namespace) -> int:
     """Check chosen.config; 0, or 2 when it has mistakes. InputError for a file that cannot be read."""
-    summary = check_file(Path(chosen.config), chosen.set)
+    summary = check_file(Path(chosen.config), chosen.set, chosen.kit)
     if chosen.json:
         sys.stdout.write(json_text(summary))
     elif not summary["mistakes"] and not chosen.quiet:
@@ -24,8 +24,11 @@ def command(chosen: Namespace) -> int:
     return BAD_INPUT if summary["mistakes"] else GOOD
 
 
-def check_file(path: Path, settings: list[str]) -> dict[str, Any]:
-    """Mistakes, warnings and the expected cost of a configuration, as a table for JSON. InputError."""
+def check_file(path: Path, settings: list[str], kit: bool = False) -> dict[str, Any]:
+    """Mistakes, warnings and the expected cost of a configuration, as a table for JSON. InputError.
+
+    kit : what cannot be made is a mistake too.
+    """
     from softdot.case import Case
     from softdot.config.default_design import keys_from_default, with_default_design
     from softdot.config.loading import config_from, unused_material_warnings
@@ -35,7 +38,11 @@ def check_file(path: Path, settings: list[str]) -> dict[str, Any]:
 
     def check(tables: Mapping[str, Any]) -> tuple[Any, ...]:
         case = Case(config_from(with_default_design(tables)))
-        return case.config, [*case.warnings, *unused_material_warnings(case.config)], case.cost
+        made = contents_of(case.config, case.warnings).warnings if kit else case.warnings
+        return case.config, [*made, *unused_material_warnings(case.config)], case.cost
+
+    if kit:
+        from softdot.kit.folder import contents_of
 
     stated = with_settings(read_toml(path), settings)
     found, checked = mistakes(stated, check)

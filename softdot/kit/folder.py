@@ -132,6 +132,7 @@ def contents_of(config: Config, warnings: list[str]) -> Contents:
         budget_note="",
         press=press_words(budget_config(config)),
         pressed=_budget_subject(config),
+        readout=config.readout,
         warnings=(*warnings, *_loose_film_warnings(device, flat), *notes, *unprintable),
     )
 

@@ -3,8 +3,10 @@
 from dataclasses import asdict
 from typing import Any
 
-from export.build_sheet.contents import Contents, bill_of_materials, components
-from export.build_sheet.page import capacitance_pF, checks, traces
+from export.build_sheet.bill import bill_of_materials
+from export.build_sheet.contents import Contents, components
+from export.build_sheet.electrical import capacitance_pF
+from export.build_sheet.page import checks, traces
 from export.build_sheet.steps import steps
 from geometry.flat.pattern import FlatPattern, kerf_compensated_pattern
 from softdot.config.hashes import config_hash

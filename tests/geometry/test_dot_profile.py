@@ -40,6 +40,6 @@ def test_the_solid_of_a_paraboloid_has_its_volume(tmp_path, segment):
     assert measured.height_mm == pytest.approx(0.5)
     assert measured.radius_mm == pytest.approx(0.64)  # r^2 / 2 h
     low = dot_solid(measured, segment)
-    assert low.bounding_box().min.Z == pytest.approx(measured.origin_mm[2], abs=1e-6)
+    assert pytest.approx(measured.origin_mm[2], abs=1e-6) == low.bounding_box().min.Z
     added = low.volume - dot_solid(plate, segment).volume
     assert added == pytest.approx(0.5 * pi * 0.64 * 0.5, rel=1e-4)
