@@ -77,11 +77,11 @@ MERIDIAN_POINTS = 40
 
 def _revolved(profile: DotProfile) -> Any:
     """A measured dot: a spline through points of its meridian, turned about its axis."""
-    from build123d import Axis, Edge, Face, Solid, Vector, Wire
+    from build123d import Axis, Edge, Face, Solid, Wire
 
-    points = [Vector(radius, 0.0, depth) for radius, depth in profile.meridian_mm(MERIDIAN_POINTS)]
-    base = Vector(0.0, 0.0, profile.height_mm)
-    edges = [Edge.make_spline(points), Edge.make_line(points[-1], base), Edge.make_line(base, points[0])]
+    meridian = [(float(radius), 0.0, float(depth)) for radius, depth in profile.meridian_mm(MERIDIAN_POINTS)]
+    base = (0.0, 0.0, profile.height_mm)
+    edges = [Edge.make_spline([*meridian]), Edge.make_line(meridian[-1], base), Edge.make_line(base, meridian[0])]
     return Solid.revolve(Face(Wire(edges)), 360.0, Axis.Z)
 
 

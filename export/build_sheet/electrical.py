@@ -78,6 +78,6 @@ def rim_text(contents: Contents) -> str | None:
     stiff = modulus / max(gap - RIM_TOLERANCE_MM, 0.5 * gap)
     return (
         f"{stack.side_stiffness_N_per_mm3:g} N/mm³: G / t with glue of shear modulus G = {modulus:g} MPa in a gap of "
-        f"t = {gap:.2g} mm; {modulus / (gap + RIM_TOLERANCE_MM):.2g} to {stiff:.2g} if it is off by {RIM_TOLERANCE_MM:g}. "
+        f"t = {gap:.2g} mm; {modulus / (gap + RIM_TOLERANCE_MM):.2g} to {stiff:.2g} if off by {RIM_TOLERANCE_MM:g} mm. "
         "Across the gap the glue is at least four times as stiff, which the simulated rim is not"
     )
