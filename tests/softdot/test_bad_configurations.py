@@ -274,3 +274,15 @@ def test_an_unreadable_file_is_refused(write_config, tmp_path, capfd):
     config.chmod(0)
     said = refusal(["run", str(config), "-o", str(tmp_path / "out")], tmp_path, capfd)
     assert said == f"configuration '{config}': cannot be read (Permission denied)"
+
+
+def test_check_finds_what_a_kit_would_refuse(tmp_path, capsys):
+    """Electrodes that touch can be simulated, and are one piece of metal."""
+    rows = [
+        f'{{name = "{name}", center_mm = [0.0, {y}], size_mm = [1.8, 1.2]}}' for name, y in (("a", 0.6), ("b", -0.6))
+    ]
+    text = ", ".join(rows)
+    (tmp_path / "pair.toml").write_text(f"[segment.film]\nelectrodes = [{text}]\n")
+    assert main(["check", str(tmp_path / "pair.toml"), "-q"]) == 0
+    assert main(["check", str(tmp_path / "pair.toml"), "-q", "--kit"]) == 2
+    assert "'a' and 'b' are 0 mm apart" in capsys.readouterr().err
