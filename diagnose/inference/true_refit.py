@@ -102,8 +102,8 @@ def errors(
     gain = float(np.mean(gains[own])) if settings and own else 0.0
     old, new = (_squares(model, presses, shown) for shown in (model.signals(before), model.signals(after, settings)))
     by_channel = tuple((missed, left, noise) for (missed, noise), (left, _) in zip(old, new, strict=True))
-    means = np.sqrt(np.mean(by_channel, axis=0)) if by_channel else np.full(3, np.nan)
-    return Fit(names, *means.tolist(), gain, by_channel)
+    missed, left, noise = np.sqrt(np.mean(by_channel, axis=0)) if by_channel else np.full(3, np.nan)
+    return Fit(names, float(missed), float(left), float(noise), gain, by_channel)
 
 
 def _squares(
