@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from foundation.errors import InputError
 from geometry.braille_standards import BrailleStandard, standard
 from geometry.dot_profile import read_profile
-from geometry.parameters import SIZED_DOTS, Dot
+from geometry.parameters import Dot
 
 DEFAULT_STANDARD = "marburg-medium"
 SIZE_KEYS = ("base_diameter_mm", "height_mm", "radius_mm")
@@ -25,7 +25,7 @@ def dot_standard(dot: Dot) -> BrailleStandard | None:
 
     InputError where both a standard and sizes are stated.
     """
-    if dot.shape not in SIZED_DOTS:
+    if dot.profile_csv is not None:
         return None
     given = [name for name in SIZE_KEYS if getattr(dot, name) is not None]
     if dot.standard is None:

@@ -128,13 +128,14 @@ class Table(BaseModel):
     def _refuse_idle_keys(self) -> Self:
         for name, acts in self.conditional_keys():
             value = getattr(self, name)
-            if acts.needed and self.lacks(name) and acts.holds(self.__dict__):
-                raise ValueError(f"{name} is missing: {acts.stated_tags(self)} needs it")
             if name in self.model_fields_set and value is not None and not acts.holds(self.__dict__):
                 here = acts.stated_tags(self)
                 raise ValueError(
                     f"{name} = {_message_value(value)}: acts only {acts.words}{f', here {here}' if here else ''}"
                 )
+        for name, acts in self.conditional_keys():
+            if acts.needed and self.lacks(name) and acts.holds(self.__dict__):
+                raise ValueError(f"{name} is missing: {acts.stated_tags(self)} needs it")
         return self
 
     @model_serializer(mode="wrap")

@@ -1,6 +1,7 @@
-"""The words of a language as Braille cells, with how often they are used.
+"""The words of a language as Braille cells, with how often they are used, by the lists of pyspellchecker.
 
-Words and counts are those of pyspellchecker, made from OpenSubtitles (Lison and Tiedemann, LREC 2016).
+Their counts come from OpenSubtitles (Lison and Tiedemann, LREC 2016), so that they are those of what people say.
+Letters alone make a word; of English ones those of a single letter are a, i and o.
 """
 
 from dataclasses import dataclass

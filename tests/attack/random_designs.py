@@ -121,6 +121,8 @@ def _segment(draw, solid, round_one, reducible, halves):
             {"name": name, "center_mm": [side * length / 4, 0.0], "size_mm": [length / 2, width]}
             for side, name in ((-1, "left"), (1, "right"))
         ]
+        if solid and not halves:
+            table["film"]["electrodes"] = _outlines(draw, length, width)
     if draw.perhaps(0.3):
         table["bonds"] = [
             {
@@ -222,6 +224,16 @@ def _press(draw, segment, softest_MPa, clear_mm, by_depth):
     return table
 
 
+def _outlines(draw, length, width):
+    """A circle on the left, a triangle on the right."""
+    radius = draw.between(0.3, 0.9) * min(length / 4, width / 2)
+    corners = [[0.1 * length, -0.4 * width], [0.45 * length, 0.0], [0.1 * length, 0.4 * width]]
+    return [
+        {"name": "left", "shape": "circle", "center_mm": [-length / 4, 0.0], "radius_mm": radius},
+        {"name": "right", "shape": "polygon", "corners_mm": corners},
+    ]
+
+
 def _mesh(draw, solid, round_one):
     size = draw.between(0.9, 1.4) if solid else draw.between(0.6, 1.0)
     table = {"element_size_mm": size, "contact_element_size_mm": 0.5 * size, "timeout_s": 120.0}
@@ -246,7 +258,24 @@ def _readout(draw):
         table["filter_order"] = draw.whole(1, 4)
     if draw.perhaps(0.3):
         table["limit_V"] = draw.log(0.01, 10.0)
+    if draw.perhaps(0.3):
+        table["amplifier"] = _amplifier(draw)
+        del table["noise_V"]
     return table
+
+
+def _amplifier(draw):
+    table = {
+        "gain": draw.log(0.5, 100.0), "voltage_noise_nV_per_rtHz": draw.log(1.0, 100.0),
+        "noise_corner_Hz": draw.log(1.0, 1e3), "bias_current_pA": draw.log(1e-3, 10.0),
+        "current_noise_fA_per_rtHz": draw.log(0.1, 100.0), "input_capacitance_pF": draw.between(0.0, 10.0),
+        "hum_mV": draw.between(0.0, 1.0), "hum_Hz": draw.among((50.0, 60.0)), "noise_from_Hz": draw.log(1e-3, 0.1),
+        "temperature_C": draw.between(0.0, 40.0),
+    }  # fmt: skip
+    if draw.perhaps(0.5):
+        table |= {"adc_bits": draw.whole(8, 24), "adc_range_V": draw.log(0.1, 100.0), "sample_rate_Hz": 1e4}
+    table |= {"bandwidth_Hz": 1e4} if draw.perhaps(0.5) else {"gain_bandwidth_MHz": draw.log(0.1, 100.0)}
+    return {"part": "LMP7721", **table} if draw.perhaps(0.3) else table
 
 
 def keys_set(table) -> set[str]:

@@ -36,6 +36,7 @@ PLACED = re.compile(r"mesh\.accuracy_percent = \S+: a press to choose the sizes 
 NOT_HERE = {
     "Waveform.file",
     "MeshOptions.file",
+    "Dot.profile_csv",
 }  # need a second file; see test_bad_configurations.py, test_mesh_files.py
 MONOTONE = {"low-pass", "saturation", "mains-hum", "charge-leakage", "parasitic-capacitance", "pyroelectric-drift",
             "contact-electrification", "hyperelastic-stiffening", "elastic-sides", "dot-offset", "contact-gap",
