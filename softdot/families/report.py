@@ -24,8 +24,10 @@ HERE = Path(__file__).parent
 LABELS = {FORCE: "force (N)", VOLTAGE: "open-circuit voltage (V)"}
 COLOURS = {FORCE: "#b5263b", VOLTAGE: "#1f5fa8"}
 CURVE_POINTS, FRONT_DESIGNS, SOBOL_DESIGNS = 41, 4096, 1024
-MOST_SHOWN = 12
-"""Points of a response, designs of the trade-off and of each column of Sobol's matrices; rows of the front."""
+MOST_SHOWN, MOST_COLUMNS = 12, 3
+"""Points of a response, designs of the trade-off and of each column of Sobol's matrices; rows of the front, curves side
+by side.
+"""
 
 
 def write_page(path: Path, family: Family, summary: Mapping[str, Any]) -> None:
@@ -107,15 +109,18 @@ def _curves_figure(family: Family) -> "Figure":
     from matplotlib.figure import Figure
 
     count = family.space.count
-    figure = Figure(figsize=(max(5.0, 2.7 * count), 5.6), dpi=110, facecolor="white", layout="constrained")
-    cells = figure.subplots(len(LABELS), count, squeeze=False, sharey="row")
+    columns, blocks = min(count, MOST_COLUMNS), -(-count // MOST_COLUMNS)
+    size = (max(5.0, 2.7 * columns), 5.6 * blocks)
+    figure = Figure(figsize=size, dpi=110, facecolor="white", layout="constrained")
+    cells = figure.subplots(len(LABELS) * blocks, columns, squeeze=False, sharey="row")
     along = np.linspace(-1.0, 1.0, CURVE_POINTS)
     for axis, one in enumerate(family.space.ranges):
         places = np.zeros((CURVE_POINTS, count))
         places[:, axis] = along
         shown = family.region.holds(places)
-        for line, name in enumerate(LABELS):
-            cell, course = cells[line][axis], family.quantities[name].course(places)
+        block = cells[len(LABELS) * (axis // columns) :, axis % columns]
+        for cell, name in zip(block, LABELS, strict=False):
+            course = family.quantities[name].course(places)
             low, value, high = (
                 np.where(shown, part[:, -1], np.nan) for part in (course.low, course.value, course.high)
             )
@@ -123,8 +128,10 @@ def _curves_figure(family: Family) -> "Figure":
             cell.plot(one.values(along), value, color=COLOURS[name], lw=1.6)
             cell.grid(alpha=0.3)
             cell.tick_params(labelsize=8)
-        cells[-1][axis].set_xlabel(one.keys[0].replace(".", ".\n", 1), fontsize=8, color=INK)
-    for line, label in zip(cells, LABELS.values(), strict=True):
+        block[len(LABELS) - 1].set_xlabel(one.keys[0].replace(".", ".\n", 1), fontsize=8, color=INK)
+    for unused in cells[-len(LABELS) :, count - columns * (blocks - 1) :].ravel():
+        unused.set_axis_off()
+    for line, label in zip(cells, [*LABELS.values()] * blocks, strict=True):
         line[0].set_ylabel(label, fontsize=10, color=INK)
     return figure
 

@@ -276,6 +276,7 @@ def test_an_unreadable_file_is_refused(write_config, tmp_path, capfd):
     assert said == f"configuration '{config}': cannot be read (Permission denied)"
 
 
+@pytest.mark.press
 def test_check_finds_what_a_kit_would_refuse(tmp_path, capsys):
     """Electrodes that touch can be simulated, and are one piece of metal."""
     rows = [

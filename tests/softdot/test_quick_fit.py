@@ -48,6 +48,7 @@ def engine_of(true, stated, moved=0.0):
     return replace(engine, recording=Recording(tuple(runs)), readout=stated)
 
 
+@pytest.mark.press
 @for_each(
     ("true", "stated"),
     [
