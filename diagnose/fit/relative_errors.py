@@ -35,19 +35,20 @@ class RelativeErrors:
         return self.squares(residual) - self._scale
 
     @property
-    def noise_sigma(self) -> float:
-        """One sigma of the sum of above_noise of noise alone."""
-        return float(np.sqrt(2.0 * np.sum(self._scale**2)))
+    def noise_sigma(self) -> Floats:
+        """One sigma (c,) of the sum of above_noise in each channel, of noise alone."""
+        return np.asarray(np.sqrt(2.0 * np.bincount(self.channel, self._scale**2)))
 
-    def share_taken(self, before: Floats, after: Floats, allowed: float = 0.0) -> float:
+    def share_taken(self, before: Floats, after: Floats, sigmas: float = 0.0) -> float:
         """Share of what one prediction leaves above noise, before (n,), that another takes away; it leaves after (n,).
 
         The noise drops out of the difference, and a channel whose noise was estimated too large counts as one without
-        excess and hides that of no other. allowed : what may be left and counts as taken.
+        excess and hides that of no other. sigmas : of the noise in a channel that may be left in it and count as taken.
         """
-        excess = float(np.maximum(np.bincount(self.channel, before), 0.0).sum())
-        left = excess - float((before - after).sum())
-        return 1.0 - max(left - allowed, 0.0) / excess if excess > 0.0 else 0.0
+        excess = np.maximum(np.bincount(self.channel, before), 0.0)
+        taken = np.bincount(self.channel, before - after) + sigmas * self.noise_sigma
+        left = np.maximum(excess - taken, 0.0)
+        return 1.0 - float(left.sum() / excess.sum()) if excess.any() else 0.0
 
     def largest(self, squares: Floats) -> float:
         """Root of the sum of squares (n,) of the worst channel."""

@@ -184,7 +184,7 @@ class Judge:
 
     def known_share(self, one: Hypothesis) -> float:
         """The same share, were two sigma of the noise in what it leaves no more than noise."""
-        return self.errors.share_taken(self.nothing.left, one.left, 2.0 * self.errors.noise_sigma)
+        return self.errors.share_taken(self.nothing.left, one.left, 2.0)
 
     def error(self, one: Hypothesis) -> float:
         """Root mean square error of a hypothesis in conditions left out, above noise, of the worst channel."""

@@ -219,7 +219,7 @@ def test_a_channel_whose_noise_was_estimated_too_large_hides_no_other():
     errors = RelativeErrors(np.ones(4), np.ones(4), np.array([0, 0, 1, 1]), np.ones(4, dtype=bool))
     before, after = np.array([0.3, 0.1, -5.0, 1.0]), np.array([0.1, 0.1, -5.1, 1.1])
     assert errors.share_taken(before, after) == pytest.approx(0.5)
-    assert errors.share_taken(before, before - 0.1 * (errors.channel == 1)) > 0.0
+    assert errors.share_taken(before, before + 0.1 * (errors.channel == 1)) < 0.0
 
 
 @pytest.mark.press
