@@ -161,7 +161,7 @@ def does_nothing(*_):
     return 0.0
 
 
-def writes_on_and_on(_mesh, _result, _dot, folder, _readout):
+def writes_on_and_on(_mesh, _result, _dot, folder, *_):
     while True:
         with suppress(OSError):
             folder.mkdir(parents=True, exist_ok=True)
@@ -170,7 +170,9 @@ def writes_on_and_on(_mesh, _result, _dot, folder, _readout):
 @pytest.mark.process
 def test_a_failure_leaves_nothing_though_the_second_process_still_writes(tmp_path, capfd, stages, monkeypatch):
     def full(_dot, _result, _summary, folder, _pictures):
+        end = time.monotonic() + 120.0
         while not (folder / "pictures").exists():
+            assert time.monotonic() < end, "the second process does not write"
             time.sleep(0.01)
         raise OSError(errno.EFBIG, "File too large")
 
