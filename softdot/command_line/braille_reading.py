@@ -61,11 +61,7 @@ def add_read(commands: Any) -> None:
     )
     read.add_argument("--standard", metavar="NAME", help="a Braille standard of the kernel's pitch; default: its own")
     read.add_argument("--table", metavar="TABLE", help="translate with this table of liblouis, such as en-ueb-g2.ctb")
-    read.add_argument(
-        "--language",
-        metavar="NAME",
-        help="en or de: its words complete uncertain cells of the decoder hand, told apart",
-    )
+    read.add_argument("--language", metavar="NAME", help="en or de: words complete what hand leaves uncertain, apart")
     read.add_argument("--mode", choices=("slide", "press"), help="slide along the line, or press cell by cell")
     for name, unit, meaning in READING_OPTIONS:
         read.add_argument(f"--{name}", type=float, metavar=unit, help=meaning)

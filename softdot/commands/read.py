@@ -17,8 +17,10 @@ if TYPE_CHECKING:
     from argparse import Namespace
 
     from softdot.arrays.kernel import ArrayKernel
+    from softdot.braille_text.words import Words
     from softdot.config.schema import Config
     from softdot.reading.conditions import ReadingConditions
+    from softdot.reading.line_reading import LineReading
 
 READING = Product(
     "softdot-reading/1", "reading.json", frozenset({"reading.json", "signals.npz", "signals.png", "report.html"})
@@ -46,21 +48,15 @@ def run_read(
     from the text that is read.
     InputError, before anything is written, for whatever cannot be read.
     """
-    import numpy as np
-
-    from export.array.reading_page import write_reading_page
-    from export.array.signals import draw_signals
     from foundation.errors import InputError
-    from softdot.braille_text.words import words_of
     from softdot.reading.calibration_file import load_calibration, widened
     from softdot.reading.cells import cells_of
     from softdot.reading.conditions import ReadingConditions
-    from softdot.reading.decoders import HAND, named_decoders
+    from softdot.reading.decoders import named_decoders
     from softdot.reading.kernels import open_kernel, readout_of
     from softdot.reading.language import language_content
     from softdot.reading.line_reading import read_line, reading_content
     from softdot.reading.recorded_file import read_voltages
-    from softdot.reading.signals import page_signals, signal_arrays
     from softdot.system_libraries import name_missing_library
 
     if calibration is not None and recording is None:
@@ -68,9 +64,7 @@ def run_read(
     progress = progress or Logged()
     with name_missing_library():
         names = named_decoders(decoders)
-        if language is not None and names[0] != HAND:
-            raise InputError(f"--language = '{language}': acts on what the decoder {HAND} reads; --decoders {HAND}")
-        words = None if language is None else words_of(language, table)
+        words = None if language is None else _words(language, table, names)
         cells = None if recording is not None and not (text or "").strip() else cells_of(text or "", table)
         kernel = open_kernel(kernel_folder, config)
         heard = None if recording is None else read_voltages(recording, len(kernel.centres_mm))
@@ -81,7 +75,6 @@ def run_read(
             chosen = conditions or ReadingConditions()
             reading = read_line(kernel, readout_of(kernel, config), chosen, names, progress, cells, heard)
             progress.stage("export")
-            arrays = signal_arrays(reading)
             summary: dict[str, Any] = plain(
                 {
                     **_origin(kernel, table, recording, calibration),
@@ -90,13 +83,36 @@ def run_read(
                 }
             )
             warn(summary["warnings"])
-            with (folder / "signals.npz").open("wb") as file:
-                np.savez_compressed(file, **arrays)  # type: ignore[arg-type]
-            draw_signals(arrays, kernel.about["labels"], folder / "signals.png")
-            if cells is not None:
-                write_reading_page(folder / "report.html", summary, page_signals(reading))
-            write_json(folder / READING.summary, summary)
+            _write_reading(reading, summary, folder)
     return summary
+
+
+def _words(language: str, table: str | None, decoders: list[str]) -> Words:
+    """The words that complete what the first decoder reads. InputError where it is another one than HAND."""
+    from foundation.errors import InputError
+    from softdot.braille_text.words import words_of
+    from softdot.reading.decoders import HAND
+
+    if decoders[0] != HAND:
+        raise InputError(f"--language = '{language}': acts on what the decoder {HAND} reads; --decoders {HAND}")
+    return words_of(language, table)
+
+
+def _write_reading(reading: LineReading, summary: dict[str, Any], folder: Path) -> None:
+    """All files of a reading; the page only where the true cells are known."""
+    import numpy as np
+
+    from export.array.reading_page import write_reading_page
+    from export.array.signals import draw_signals
+    from softdot.reading.signals import page_signals, signal_arrays
+
+    arrays = signal_arrays(reading)
+    with (folder / "signals.npz").open("wb") as file:
+        np.savez_compressed(file, **arrays)  # type: ignore[arg-type]
+    draw_signals(arrays, reading.reader.kernel.about["labels"], folder / "signals.png")
+    if reading.cells_true is not None:
+        write_reading_page(folder / "report.html", summary, page_signals(reading))
+    write_json(folder / READING.summary, summary)
 
 
 def _origin(kernel: ArrayKernel, table: str | None, recording: Path | None, calibration: Path | None) -> dict[str, Any]:

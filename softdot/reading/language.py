@@ -57,7 +57,8 @@ def language_content(found: DecodedCells, words: Words, table: str | None) -> di
 def complete(likely: Ints, shares: Floats, certain: Bools, words: Words, least: float) -> CompletedCells:
     """Cells (c,) with what words say of the uncertain ones.
 
-    shares (c, 64) : probability of each cell by the voltages. least : probability above which a cell is completed.
+    shares (c, 64) : probability of each cell by the voltages. least : probability above which a cell is completed. Of
+    a line without a certain cell, which is no Braille or no text, words would invent all, and complete nothing.
     """
     cells, probability = likely.copy(), shares[np.arange(len(likely)), np.maximum(likely, 0)]
     sharp = np.eye(KINDS_OF_CELL)[np.maximum(likely, 0)]
@@ -71,7 +72,7 @@ def complete(likely: Ints, shares: Floats, certain: Bools, words: Words, least: 
         unsure = ~certain[begin:end]
         cells[begin:end][unsure] = best[unsure]
         probability[begin:end][unsure] = found.max(axis=1)[unsure]
-    return CompletedCells(cells, probability, ~certain & (probability >= least))
+    return CompletedCells(cells, probability, ~certain & (probability >= least) & certain.any())
 
 
 def _stretches(apart: Bools) -> list[tuple[int, int]]:

@@ -50,6 +50,7 @@ def test_words_complete_what_is_uncertain_and_leave_what_is_certain():
     np.testing.assert_array_equal(found.cells[certain], true[certain])
     assert found.completed.nonzero()[0].tolist() == [1, 7]
     np.testing.assert_array_equal(found.cells[[1, 7]], true[[1, 7]])
+    assert not complete(true, np.eye(64)[true], np.zeros(len(true), dtype=bool), words_of("en"), 0.9).completed.any()
 
 
 def test_a_language_that_cannot_act_is_refused_by_name(kernel_folder, tmp_path, capfd):
