@@ -110,28 +110,32 @@ def _aim_camera(camera: Any, view: View, box: tuple[float, float, float, float])
     camera.parallel_scale = (top - bottom) / 2
 
 
-def picture_page(box: tuple[float, float, float, float], title: str) -> tuple[Any, Any, float]:
-    """A white page of PICTURE_SIZE_PX whose coordinates are mm on the picture, with room for writing around box.
+def picture_page(
+    box: tuple[float, float, float, float], title: str, least_height_in: float = HEIGHT_IN
+) -> tuple[Any, Any, float]:
+    """A white page whose coordinates are mm on the picture, with room for writing around box.
 
+    It has PICTURE_SIZE_PX, and is lower, down to least_height_in, where box is so flat that most of it would be empty.
     Returns figure, axes and pixels per mm.
     """
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(WIDTH_IN, HEIGHT_IN), dpi=DPI, facecolor="white")
+    left, right, bottom, top = box
+    margins_in = {side: MARGIN_SHARES[side] * HEIGHT_IN for side in ("bottom", "top")}
+    width_in = (1 - MARGIN_SHARES["left"] - MARGIN_SHARES["right"]) * WIDTH_IN
+    inch_per_mm = min(width_in / (right - left), (HEIGHT_IN - sum(margins_in.values())) / (top - bottom))
+    needed_in = (top - bottom) * inch_per_mm + sum(margins_in.values())
+    height_in = min(max(needed_in, least_height_in), HEIGHT_IN)
+    figure = Figure(figsize=(WIDTH_IN, height_in), dpi=DPI, facecolor="white")
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
-    left, right, bottom, top = box
-    room = (
-        (1 - MARGIN_SHARES["left"] - MARGIN_SHARES["right"]) * WIDTH_IN,
-        (1 - MARGIN_SHARES["bottom"] - MARGIN_SHARES["top"]) * HEIGHT_IN,
-    )
-    inch_per_mm = min(room[0] / (right - left), room[1] / (top - bottom))
-    span = np.array([WIDTH_IN, HEIGHT_IN]) / inch_per_mm
+    span = np.array([WIDTH_IN, height_in]) / inch_per_mm
     x0 = (left + right) / 2 - span[0] * (MARGIN_SHARES["left"] + (1 - MARGIN_SHARES["right"])) / 2
-    y0 = (bottom + top) / 2 - span[1] * (MARGIN_SHARES["bottom"] + (1 - MARGIN_SHARES["top"])) / 2
+    y0 = (bottom + top) / 2 - (margins_in["bottom"] + height_in - margins_in["top"]) / inch_per_mm / 2
     axes.set_xlim(x0, x0 + span[0])
     axes.set_ylim(y0, y0 + span[1])
-    figure.text(0.04, 0.955, title, fontsize=15, fontweight="bold", color=INK, va="center")
+    title_in = 0.045 * HEIGHT_IN
+    figure.text(0.04, 1 - title_in / height_in, title, fontsize=15, fontweight="bold", color=INK, va="center")
     return figure, axes, inch_per_mm * DPI
 
 

@@ -12,7 +12,7 @@ from diagnose.signals.recording import Recording
 from foundation.arrays import Floats
 
 BAND_EDGES_HZ = (0.0, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, np.inf)
-MOST_ROWS = 40
+MOST_ROWS, LABEL_CHARACTERS = 40, 24
 
 
 def draw_overview(recording: Recording, findings: Findings, path: Path) -> Path | None:
@@ -21,7 +21,11 @@ def draw_overview(recording: Recording, findings: Findings, path: Path) -> Path 
         return None
     from matplotlib.colors import PowerNorm
 
-    rows = [(run.label, channel) for run in recording.runs for channel in run.answers][:MOST_ROWS]
+    whole = [(run.label, channel) for run in recording.runs for channel in run.answers]
+    rows = whole[:MOST_ROWS]
+    labels = dict(
+        zip((run.label for run in recording.runs), short_labels([run.label for run in recording.runs]), strict=True)
+    )
     phases = list(PHASES)
     bands = sorted({band_number(place) for place in findings.places})
     tables = {phase: excess_percent(findings.places, rows, phase, bands) for phase in phases}
@@ -32,11 +36,12 @@ def draw_overview(recording: Recording, findings: Findings, path: Path) -> Path 
         image = panel.imshow(tables[phase], cmap="Reds", norm=scale, aspect="auto")
         panel.set_title(phase, fontsize=11)
         panel.set_xticks(range(len(bands)), [_band_text(band) for band in bands], rotation=60, fontsize=8)
-        panel.set_yticks(range(len(rows)), [_row_text(*row) for row in rows], fontsize=8)
+        panel.set_yticks(range(len(rows)), [_row_text(labels[run], channel) for run, channel in rows], fontsize=8)
         panel.tick_params(length=0)
         panel.set_facecolor("#eef0f2")
         panel.spines[:].set_visible(False)
-    figure.supxlabel("frequency (Hz)", fontsize=10)
+    cut = "" if rows == whole else f"; the first {len(rows)} of {len(whole)} rows"
+    figure.supxlabel(f"frequency (Hz){cut}", fontsize=10)
     bar = figure.colorbar(image, ax=list(panels[0]), pad=0.01, aspect=30)
     bar.set_label("share of all excess (%)", fontsize=10)
     return save(figure, path)
@@ -66,6 +71,14 @@ def _band_text(band: int) -> str:
     return f"< {high:g}" if low == 0.0 else f"> {low:g}" if np.isinf(high) else f"{low:g}–{high:g}"
 
 
+def short_labels(labels: Sequence[str]) -> list[str]:
+    """Labels of at most LABEL_CHARACTERS, which differ where the whole ones do: numbered where what is cut made the
+    difference.
+    """
+    cut = [label if len(label) <= LABEL_CHARACTERS else f"{label[: LABEL_CHARACTERS - 1]}…" for label in labels]
+    numbered = [f"{number} {label}" for number, label in enumerate(cut, 1)]
+    return numbered if len(set(cut)) < len(set(labels)) else cut
+
+
 def _row_text(run: str, channel: str) -> str:
-    short = run if len(run) <= 24 else f"{run[:23]}…"
-    return f"{short} · {channel.rpartition('_')[0].replace('_', ' ')}"
+    return f"{run} · {channel.rpartition('_')[0].replace('_', ' ')}"

@@ -14,6 +14,7 @@ from export.cut_files.style import STYLES
 from export.page import page_environment
 from export.report import number
 from foundation.files import write_whole_text
+from geometry.fabrication.part import printer_profile
 from geometry.flat.electrodes import stray_area_mm2, stray_areas_mm2
 
 SHEET_RESISTANCE_OHM = {"NiAl": 3.0, "silver ink": 0.1}
@@ -80,13 +81,14 @@ def traces(contents: Contents) -> list[RoutedTrace]:
 def _printed_part_checks(contents: Contents) -> list[Check]:
     """Checks of sizes of printed parts on which others depend."""
     found = []
+    off = f" ± {printer_profile(contents.fabrication.printer)['deviation_mm']:g}"
     for pour in contents.solid.pours:
         gauge = gauging(contents, pour.component)
         depth = gauge.size_mm / (1.0 - pour.shrinkage_percent / 100)
         again = "print the mould again, its cavity deeper or shallower by the difference"
         where = ", at its deepest point" if gauge.shape == "dome" else ""
         what = f"depth of each cavity in the mould of {layer_in_sentence(pour.component)}{where}"
-        found.append(Check(what, f"{depth:.3f} mm", again))
+        found.append(Check(what, f"{depth:.3f}{off} mm", again))
     rim = rim_text(contents)
     if rim is not None:
         found.append(Check("side stiffness of the rim", rim, "state the shear modulus of your glue, build again"))
@@ -96,7 +98,7 @@ def _printed_part_checks(contents: Contents) -> list[Check]:
             one, which = contents.device.stack, "opening"
             if len(run.feet) > 1:
                 one, which = contents.segment, f"each of the {len(run.feet)} openings"
-            size = f"{one.length_mm + 2 * run.gap:.4g} × {one.width_mm + 2 * run.gap:.4g} mm"
+            size = f"{one.length_mm + 2 * run.gap:.4g} × {one.width_mm + 2 * run.gap:.4g}, each{off} mm"
             tight = "file it wider: a layer that is too tight bulges"
             found.append(Check(f"{which} of {label} at its top, x × y", size, tight))
     return found

@@ -152,6 +152,7 @@ def rim_gap_mm(stack: Segment, fabrication: Fabrication) -> float:
     Of an elastic rim it is the thickness at which the glue shears as the rim does, k = G / t (Goland and Reissner,
     J. Appl. Mech. 11, 1944, A17-A27). InputError for one that cannot be built.
     """
+    _refuse_the_other_rim(stack.boundary, fabrication)
     if stack.boundary != "elastic":
         return fabrication.glue_gap_mm
     gap = fabrication.rim_glue_modulus_MPa / stack.side_stiffness_N_per_mm3
@@ -164,6 +165,18 @@ def rim_gap_mm(stack: Segment, fabrication: Fabrication) -> float:
             f"mm, which cannot be filled evenly; must be between {least:.3g} and {most:.3g}"
         )
     return gap
+
+
+def _refuse_the_other_rim(boundary: str, fabrication: Fabrication) -> None:
+    """InputError for a number of the glue beside held layers that says nothing of the stated boundary."""
+    elastic = boundary == "elastic"
+    unused, used = ("glue_gap_mm", "rim_glue_modulus_MPa") if elastic else ("rim_glue_modulus_MPa", "glue_gap_mm")
+    value = getattr(fabrication, unused)
+    if value != Fabrication.model_fields[unused].default:
+        raise InputError(
+            f"fabrication.{unused} = {value:g}: is not used where segment.boundary is '{boundary}'; the glue beside "
+            f"held layers is stated by fabrication.{used} there"
+        )
 
 
 CABLE_EXIT_TURNS_DEG = {"+x": 0.0, "+y": 90.0, "-x": 180.0, "-y": 270.0}

@@ -8,7 +8,7 @@ from softdot.command_line.configurations import add_check, add_list, add_new, ad
 from softdot.command_line.exports import add_export
 from softdot.command_line.fabrication import add_kit, add_plate
 from softdot.command_line.presses import add_array, add_family, add_run, add_studio, add_sweep, add_verify
-from softdot.command_line.recordings import add_convert, add_diagnose, add_fit, add_material
+from softdot.command_line.recordings import add_convert, add_diagnose, add_fit, add_material, add_scan
 from softdot.command_line.studies import add_paper, add_prove
 from softdot.console import BAD_INPUT, GOOD
 
@@ -60,6 +60,7 @@ def parser() -> argparse.ArgumentParser:
     add_sweep(commands)
     add_family(commands)
     add_material(commands)
+    add_scan(commands)
     add_convert(commands)
     add_diagnose(commands)
     add_fit(commands)

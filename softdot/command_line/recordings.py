@@ -1,4 +1,4 @@
-"""The arguments of the commands on what was measured: material, convert, diagnose and fit."""
+"""The arguments of the commands on what was measured: material, scan, convert, diagnose and fit."""
 
 from typing import Any
 
@@ -46,6 +46,19 @@ def add_material(commands: Any) -> None:
     )  # fmt: skip
     material.add_argument("--name", help="of the material; by default that of the folder")
     add_output(material)
+
+
+def add_scan(commands: Any) -> None:
+    """Add the command softdot scan."""
+    scan = commands.add_parser(
+        "scan",
+        help="fit a dot to a scanned surface",
+        description="Fit a surface of revolution to the scan of one dot and the plate around it, in mm: its profile "
+        "for dot.profile_csv, and how far the scan lies from it.",
+        epilog="docs/geometry.md#dot says how a profile is pressed. " + EXIT_STATUS,
+    )
+    scan.add_argument("scan", metavar="SCAN", help="a surface as .stl, .ply or .obj, in mm")
+    add_output(scan)
 
 
 def add_convert(commands: Any) -> None:

@@ -34,8 +34,8 @@ NOT_MODELLED = (
     ),
     _entry("a curved base", "the base and all layers are flat", "curved curvature bent"),
     _entry(
-        "a dot from a STEP or STL file, or a scanned one",
-        "the dot is a cap, a ridge, a plate, or a profile over its radius (profile_csv)",
+        "a dot that is no surface of revolution, from a STEP or STL file",
+        "the dot is a cap, a ridge, a plate, or a profile over its radius, which softdot scan fits to a surface",
         "step stl file scan scanned mesh heightmap",
         "dot",
     ),

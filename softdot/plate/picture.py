@@ -11,6 +11,9 @@ from export.view import INK, DrawnBody, View, picture_box, picture_page, render,
 from softdot.plate.build import BuiltPlate
 
 VIEW = View(0.0, 50.0)
+TOP_IN, ROW_IN = 0.8, 0.4
+"""Of the column of sizes: its distance from the upper edge of the page, and its pitch."""
+MOST_LINES = 4
 KIND_TITLES = {"text": "Braille plate", "dot": "Single dot", "height-series": "Dots that grow", "tip": "Indenter tip"}
 
 
@@ -22,13 +25,18 @@ def draw_plate(built: BuiltPlate, path: Path) -> None:
     box = picture_box(VIEW.flat(np.asarray(surface.vertices)))
     red, green, blue = (round(255 * value) for value in built.plate.part.colour)
     body = DrawnBody(pyvista.wrap(surface), f"#{red:02x}{green:02x}{blue:02x}")
-    figure, axes, pixels_per_mm = picture_page(box, _title(built))
+    sizes = _sizes(built)
+    least_height_in = TOP_IN + len(sizes) * ROW_IN
+    figure, axes, pixels_per_mm = picture_page(box, _title(built), least_height_in)
     axes.imshow(render([body], VIEW, box, pixels_per_mm), extent=box, aspect="equal")
     if built.translation is not None:
-        cells = "\n".join(built.translation.lines[:4])
+        lines = built.translation.lines[:MOST_LINES]
+        size = 14 if len(lines) <= 2 else 28 / len(lines)  # they stand in the lower margin
         middle, below = (box[0] + box[1]) / 2, box[2] - 0.03 * (box[1] - box[0])
-        axes.text(middle, below, cells, fontsize=14, color=INK, ha="center", va="top", multialignment="left")
-    _write_sizes(figure, built)
+        axes.text(
+            middle, below, "\n".join(lines), fontsize=size, color=INK, ha="center", va="top", multialignment="left"
+        )
+    _write_sizes(figure, sizes)
     save_png(figure, path)
 
 
@@ -37,8 +45,8 @@ def _title(built: BuiltPlate) -> str:
     return f"{KIND_TITLES[built.request.kind]}{f' “{text}”' if text else ''}, {built.sizes.standard}"
 
 
-def _write_sizes(figure: Any, built: BuiltPlate) -> None:
-    """Write the sizes of a plate in a column at the right of its picture."""
+def _sizes(built: BuiltPlate) -> list[tuple[str, str]]:
+    """Names of sizes and their values in mm."""
     plate, first = built.plate, built.plate.dots[0]
     heights = sorted({dot.height_mm for dot in plate.dots})
     known = {name: size.value_mm for name, size in built.sizes.known.items() if name.endswith("pitch_mm")}
@@ -49,7 +57,12 @@ def _write_sizes(figure: Any, built: BuiltPlate) -> None:
     ]
     if built.translation is not None:
         rows += [(name.removesuffix("_mm").replace("_", " "), f"{value:g}") for name, value in known.items()]
-    for number, (name, value) in enumerate(rows):
-        figure.text(
-            0.75, 0.85 - 0.065 * number, f"{name}\n{value} mm", fontsize=9, color=INK, va="top", linespacing=1.3
-        )
+    return rows
+
+
+def _write_sizes(figure: Any, sizes: list[tuple[str, str]]) -> None:
+    """Write sizes in a column at the right of the picture."""
+    height_in = figure.get_figheight()
+    for number, (name, value) in enumerate(sizes):
+        above = 1 - (TOP_IN + number * ROW_IN) / height_in
+        figure.text(0.75, above, f"{name}\n{value} mm", fontsize=9, color=INK, va="top", linespacing=1.3)

@@ -16,7 +16,16 @@ def test_the_glue_line_of_an_elastic_rim_has_its_stiffness(make_segment):
     layout = frame_layout(lone_device(elastic), made)
     assert layout.ring[-1].gap == pytest.approx(0.125)
     assert "film" not in held_layer_names(elastic)
-    assert rim_gap_mm(make_segment(), made) == made.glue_gap_mm
+    assert rim_gap_mm(make_segment(), Fabrication(glue_gap_mm=0.2)) == 0.2
+
+
+@pytest.mark.parametrize(
+    ("boundary", "stated"), [("elastic", {"glue_gap_mm": 0.2}), ("clamped", {"rim_glue_modulus_MPa": 0.5})]
+)
+def test_a_number_of_the_glue_that_its_boundary_does_not_use_is_refused(make_segment, boundary, stated):
+    stiffness = {"side_stiffness_N_per_mm3": 4.0} if boundary == "elastic" else {}
+    with pytest.raises(InputError, match=f"{next(iter(stated))} = .* not used .* '{boundary}'"):
+        rim_gap_mm(make_segment(boundary=boundary, **stiffness), Fabrication(**stated))
 
 
 def test_a_rim_too_stiff_or_too_soft_to_fill_is_refused(make_segment):

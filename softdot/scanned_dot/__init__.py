@@ -1,0 +1,1 @@
+"""A dot for the configuration from a scanned surface."""
