@@ -30,18 +30,23 @@ from solve.solution.errors import NoEquilibriumError
 LEAST_LOSS, LEAST_SHARE = 0.01, 1e-3  # of the stress: less is not told
 FIRST_SHARE, LARGEST_SHARE = 0.01, 30.0  # of the stress, by one constant
 LARGEST_LOSS, BETAS = 0.95, (0.05, 2.0)
+BLOCKS = 8  # that are left out in turn, as of a law
 MISSED = 10.0  # relative residual where a point has no equilibrium
 MATERIAL: TypeAdapter[Material] = TypeAdapter(AnyMaterial)
 
 
 @dataclass(frozen=True)
 class FittedMaterial:
-    """A law with its Poisson's ratio, and what relaxes and softens; series and softening are None without."""
+    """A law with its Poisson's ratio, and what relaxes and softens; series and softening are None without.
+
+    without : fits to the courses without one of BLOCKS blocks each, where something relaxes or softens.
+    """
 
     fitted: FittedLaw
     poisson_ratio: float
     series: Prony | None = None
     softening: Softening | None = None
+    without: tuple["FittedMaterial", ...] = ()
 
     @property
     def table(self) -> dict[str, Any]:
@@ -104,8 +109,32 @@ def fit_memory(
         return np.concatenate(parts)
 
     low, high = np.array(bounds).T
-    found = least_squares(missed, np.clip(start, low, high), bounds=(low, high), x_scale=np.maximum(start, 0.1)).x
-    return _without_nothing(material(found))
+    found = least_squares(missed, np.clip(start, low, high), bounds=(low, high), x_scale=np.maximum(start, 0.1))
+    sizes = [int((course.strain <= 1.02 * strain_range).sum()) for course in courses]
+    without = tuple(material(np.clip(values, low, high)) for values in without_blocks(found, sizes))
+    return replace(_without_nothing(material(found.x)), without=without)
+
+
+def without_blocks(found: Any, sizes: Sequence[int]) -> list[Floats]:
+    """The values of a least-squares fit without one block of neighbouring samples each, to first order.
+
+    found : scipy's OptimizeResult; sizes : residuals of each course in turn. One Newton step from the whole fit, by its
+    Jacobian (Cook and Weisberg, Residuals and influence in regression, 1982, section 5.4); values on a bound stay.
+    """
+    free = found.active_mask == 0
+    jacobian, rest = found.jac[:, free], found.fun
+    offsets = np.cumsum([0, *sizes])
+    blocks = [np.zeros(len(rest), bool) for _ in range(BLOCKS)]
+    for start, size in zip(offsets, sizes, strict=False):
+        for block, part in zip(blocks, np.array_split(np.arange(start, start + size), BLOCKS), strict=True):
+            block[part] = True
+    values = []
+    for block in blocks:
+        step = np.linalg.lstsq(jacobian[~block], -rest[~block], rcond=1e-10)[0]
+        moved = found.x.copy()
+        moved[free] += step
+        values.append(moved)
+    return values
 
 
 def _units(fitted: FittedLaw, courses: Sequence[SpecimenCourse], strain_range: float) -> Floats:

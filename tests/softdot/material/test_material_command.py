@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
 from scipy.special import erf
 
 from diagnose.engines.coupon.kinematics import coupon_kinematics
@@ -14,7 +15,7 @@ from softdot.config.loading import load_config
 from softdot.config.toml import read_toml
 from softdot.material.course import HOLD, LOADING, UNLOADING, course_of
 from softdot.material.elastic_fit import FittedLaw, LoadingCurve, fit_law, rank_laws
-from softdot.material.memory_fit import MATERIAL, FittedMaterial, fit_memory
+from softdot.material.memory_fit import MATERIAL, FittedMaterial, fit_memory, without_blocks
 from softdot.material.outcome import relaxed_share
 from softdot.material.specimen_file import KINDS, SpecimenTest, read_test
 from softdot.material.stable_laws import STABLE_LAWS, Deformation, laws_for
@@ -180,6 +181,18 @@ def test_relaxation_is_that_of_the_holds(tmp_path):
     for after in (0.3, 3.0, 30.0, 150.0):
         exact = 0.3 * -np.expm1(-after / 1.5) + 0.2 * -np.expm1(-after / 40.0)
         assert relaxed_share(found.series, after) == pytest.approx(exact, abs=0.015)
+
+
+def test_a_linear_fit_without_a_block_is_that_of_the_other_samples():
+    """One Newton step is exact where residuals are linear; two courses lose a block each at once."""
+    chance = np.random.default_rng(0)
+    rows, data = chance.standard_normal((48, 3)), chance.standard_normal(48)
+    found = least_squares(lambda x: rows @ x - data, np.zeros(3))
+    for number, values in enumerate(without_blocks(found, [32, 16])):
+        kept = np.ones(48, bool)
+        kept[4 * number : 4 * number + 4] = kept[32 + 2 * number : 34 + 2 * number] = False
+        exact = np.linalg.lstsq(rows[kept], data[kept], rcond=None)[0]
+        assert values == pytest.approx(exact, abs=1e-6)
 
 
 def test_cycles_are_counted_and_their_softening_is_found(tmp_path):
