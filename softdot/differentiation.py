@@ -1,7 +1,7 @@
 """Derivatives of one press by any number of its configuration."""
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -91,7 +91,7 @@ def variations_of(config: Config, keys: Sequence[str]) -> dict[str, "Variation"]
     variations = {}
     for key in keys:
         step = RELATIVE_STEP * abs(value_of(config, key))
-        below, above = (model_of(_with_change(config, key, sign * step)) for sign in (-1.0, 1.0))
+        below, above = (model_of(with_changes(config, {key: sign * step})) for sign in (-1.0, 1.0))
         variations[key] = Variation(below, above, 2.0 * step)
     return variations
 
@@ -130,12 +130,13 @@ def _parts(key: str) -> list[str | int]:
     return parts
 
 
-def _with_change(config: Config, key: str, change: float) -> Config:
-    """The configuration with a change added to the value of one key."""
+def with_changes(config: Config, changes: Mapping[str, float]) -> Config:
+    """The configuration with a change added to the value of each key. InputError for values that are not allowed."""
     tables = copy.deepcopy(config.model_dump(mode="json", exclude_none=True))
-    table: Any = tables
-    *path, last = _parts(key)
-    for part in path:
-        table = table[part]
-    table[last] += change
+    for key, change in changes.items():
+        table: Any = tables
+        *path, last = _parts(key)
+        for part in path:
+            table = table[part]
+        table[last] += change
     return config_from(tables)

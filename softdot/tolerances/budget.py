@@ -7,6 +7,9 @@ from typing import Any
 
 from foundation.executor import HERE, Executor
 from softdot.config.schema import Config
+from softdot.differentiation import value_of
+from softdot.tolerances.draws import Box, Linear, box_questions, drawn
+from softdot.tolerances.factors import with_factors
 from softdot.tolerances.questions import Question, answer_all
 from softdot.tolerances.responses import Response, coarser_press
 from softdot.tolerances.tolerances import Tolerance, shifts, tolerances
@@ -36,7 +39,7 @@ class Budget:
 
     nominal : at the deepest step, on the mesh of the budget. nominal_mesh_error : on a coarser mesh, less nominal.
     total : root of the sum of the squares of the effects that count. elements_mm : element size, and that under the
-    dot.
+    dot. drawn : all off at once (softdot.tolerances.draws), None where the path of the press matters.
     """
 
     nominal: Response
@@ -44,6 +47,7 @@ class Budget:
     total: Response
     effects: tuple[Effect, ...]
     elements_mm: tuple[float, float]
+    drawn: dict[str, Any] | None
 
     def as_dict(self) -> dict[str, Any]:
         """The budget as kit.json holds it."""
@@ -53,6 +57,7 @@ class Budget:
             "contact_element_size_mm": self.elements_mm[1],
             "mesh_error": _as_table(self.nominal_mesh_error),
             "root_sum_square": {**_as_table(self.total), **_percent_of_nominal(self.total, self.nominal)},
+            "drawn": self.drawn,
             "rows": [_budget_row(effect, self.nominal) for effect in self.effects],
         }
 
@@ -74,8 +79,13 @@ def tolerance_budget(
         for row, *both in moved
         for way, end in zip(END_NAMES, both, strict=True)
     }
+    factored = with_factors(coarse)
+    box = Box.of(rows, lambda key: value_of(factored, key))
+    together = box_questions(coarse, box, keys)
     found = answer_all(
-        {NOMINAL_QUESTION: Question(fine, keys), **ends, CHECK_QUESTION: Question(coarse, keys)}, executor, report
+        {NOMINAL_QUESTION: Question(fine, keys), **ends, CHECK_QUESTION: Question(coarse, keys), **together},
+        executor,
+        report,
     )
     (nominal, by_key), (check, check_by_key) = found[NOMINAL_QUESTION], found[CHECK_QUESTION]
     effects = [_effect_by_derivatives(row, by_key, check_by_key) for row in rows]
@@ -83,9 +93,12 @@ def tolerance_budget(
         _effect_by_ends(row, nominal, *(found[f"{row.label}, {way}"] for way in END_NAMES)) for row, *_ in moved
     ]
     effects.sort(key=lambda effect: -abs(effect.change.voltage))
+    known = [Linear(*found[name]) for name in (CHECK_QUESTION, *together)]
+    both = [(found[f"{row.label}, {END_NAMES[0]}"], found[f"{row.label}, {END_NAMES[1]}"]) for row, *_ in moved]
+    off_at_once = drawn(box, Linear(nominal, by_key), known, both) if together else None
     return Budget(
         nominal, _difference(check, nominal), _root_sum_square(effects), tuple(effects),
-        (fine.mesh.element_size_mm, fine.mesh.contact_element_size_mm),
+        (fine.mesh.element_size_mm, fine.mesh.contact_element_size_mm), off_at_once,
     )  # fmt: skip
 
 

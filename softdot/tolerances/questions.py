@@ -12,22 +12,28 @@ from softdot.tolerances.responses import KitPress, Response, moved_label, respon
 
 
 class Question(NamedTuple):
-    """A question about the press of a configuration: for derivatives by keys, or for the response of a moved one."""
+    """A question about the press of a configuration: for derivatives by keys, for the response of a moved one, or for
+    derivatives by keys of a moved one that has the factors.
+    """
 
     config: Config
     keys: tuple[str, ...] = ()
     moved: Config | None = None
 
     def answer(self) -> Any:
-        """The result of KitPress.slopes or KitPress.value, by the last press of this process where that fits."""
+        """The result of KitPress.slopes, value or slopes_at, by the last press of this process where that fits."""
         press = kept_press(self.config)
-        return press.slopes(self.keys) if self.moved is None else press.value(self.moved)
+        if self.moved is None:
+            return press.slopes(self.keys)
+        return press.slopes_at(self.moved, self.keys) if self.keys else press.value(self.moved)
 
     def stored_answer(self) -> Any | None:
         """The answer to an earlier equal question, None where there was none."""
         known = recall(self._name)
-        if known is None or self.moved is not None:
-            return None if known is None else Response(*known)
+        if known is None:
+            return None
+        if not self.keys:
+            return Response(*known)
         return Response(*known[0]), {key: Response(*pair) for key, pair in known[1].items()}
 
     def keep(self, answer: Any) -> None:
@@ -39,7 +45,8 @@ class Question(NamedTuple):
     def _name(self) -> str:
         if self.moved is None:
             return response_name(with_factors(self.config), slopes_label(self.keys))
-        return response_name(self.moved, moved_label(self.config))
+        label = moved_label(self.config)
+        return response_name(self.moved, f"{label}, {slopes_label(self.keys)}" if self.keys else label)
 
 
 _LAST_PRESS: list[KitPress] = []

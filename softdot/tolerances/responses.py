@@ -90,6 +90,12 @@ class KitPress:
         """
         return Response(*kept_on_disk(moved, moved_label(self.config), lambda: self._value(moved)))
 
+    def slopes_at(self, moved: Config, keys: Sequence[str]) -> tuple[Response, dict[str, Response]]:
+        """As slopes, of a moved configuration that has the factors, at full load on the moved mesh."""
+        label = f"{moved_label(self.config)}, {slopes_label(keys)}"
+        found = kept_on_disk(moved, label, lambda: self._slopes_at(moved, keys))
+        return Response(*found[0]), {key: Response(*pair) for key, pair in found[1].items()}
+
     @cached_property
     def _mesh(self) -> TetMesh:
         return solved_mesh(self.config)
@@ -115,6 +121,17 @@ class KitPress:
         except ValueError as error:
             raise InputError(str(error)) from None
         return Response(*self._full_load.answer), {key: Response(*answer) for key, answer in found.items()}
+
+    def _slopes_at(self, moved: Config, keys: Sequence[str]) -> tuple[Response, dict[str, Response]]:
+        model = model_of(moved)
+        load = FullLoad(model, morphed_mesh(self._mesh, model_of(with_factors(self.config)).segment, model.segment))
+        try:
+            found = load.derivatives(variations_of(moved, keys))
+        except ValueError as error:
+            raise InputError(str(error)) from None
+        finally:
+            load.close()
+        return Response(*load.answer), {key: Response(*answer) for key, answer in found.items()}
 
     def _value(self, moved: Config) -> Response:
         if path_matters(moved):

@@ -204,6 +204,9 @@ def budget(config, monkeypatch, tmp_path):
         def slopes(self, keys):
             return Response(1.0, 10.0), {k: Response(0.01 * n, 0.1 * n) for n, k in enumerate(keys)}
 
+        def slopes_at(self, moved, keys):
+            return self.slopes(keys)
+
         def value(self, moved):
             return next(ends)
 

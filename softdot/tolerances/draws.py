@@ -1,0 +1,137 @@
+"""A tolerance budget by draws: what force and voltage become where all quantities are off at once.
+
+Each quantity is drawn evenly between its limits (JCGM 101:2008, 6.4.2), all independently. Presses with derivatives at
+a few places of the box, on the coarser mesh of the budget, show how effects bend and join; a gradient-enhanced Gaussian
+process in logarithms holds them, corrected to value and slopes of the finer mesh at the nominal design. What is known
+at both ends alone enters by the parabola through these.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.stats import qmc
+
+from foundation.arrays import Floats
+from softdot.config.schema import Config
+from softdot.differentiation import with_changes
+from softdot.families.gradient_process import GradientProcess
+from softdot.tolerances.factors import with_factors
+from softdot.tolerances.questions import Question
+from softdot.tolerances.responses import Response, path_matters
+from softdot.tolerances.tolerances import Tolerance
+
+DRAWS, SEED = 10_000, 0
+PLACES = 6
+"""Presses in the box besides the nominal one."""
+SHARES = (0.05, 0.5, 0.95)
+"""Shares of the draws that lie below what is told."""
+
+
+class Linear(NamedTuple):
+    """A response and its derivatives by key."""
+
+    nominal: Response
+    slopes: Mapping[str, Response]
+
+
+@dataclass(frozen=True)
+class Box:
+    """Quantities that are off: rows with slopes, each from -1 to 1 times its plus or minus. places (n, r), 0 first.
+
+    relative (r,) : relative change of the key that a row changes most, at its upper end.
+    """
+
+    rows: tuple[Tolerance, ...]
+    places: Floats
+    relative: Floats
+
+    @classmethod
+    def of(cls, rows: Sequence[Tolerance], value: Callable[[str], float]) -> "Box":
+        """The box of the rows that count, with its places of the presses: a Latin hypercube. value : of a key."""
+        counted = tuple(row for row in rows if row.counted)
+        random = np.random.default_rng(SEED)
+        spread = qmc.LatinHypercube(len(counted), seed=random, optimization="random-cd").random(PLACES)
+        shares = [[row.plus_minus * slope / value(key) for key, slope in row.slopes.items()] for row in counted]
+        relative = np.array([max(one, key=abs) for one in shares])
+        return cls(counted, np.vstack([np.zeros(len(counted)), 2.0 * spread - 1.0]), relative)
+
+    def logarithmic(self, places: Floats) -> Floats:
+        """Places (q, r) on axes in the logarithm of what a row changes: there powers are straight lines."""
+        return np.asarray(np.log1p(self.relative * places) / self.relative)
+
+    def changes(self, place: Floats) -> dict[str, float]:
+        """Change of each key at a place (r,)."""
+        found: dict[str, float] = {}
+        for at, row in zip(place, self.rows, strict=True):
+            for key, slope in row.slopes.items():
+                found[key] = found.get(key, 0.0) + float(at) * row.plus_minus * slope
+        return found
+
+    def along(self, found: Linear) -> tuple[Floats, Floats]:
+        """Logarithms (2,) of force and voltage, and their slopes (r, 2) along the rows, over plus or minus."""
+        size = np.abs(np.array(found.nominal))
+        rows = [
+            [
+                row.plus_minus * sum(slope * found.slopes[key][part] for key, slope in row.slopes.items())
+                for part in (0, 1)
+            ]
+            for row in self.rows
+        ]
+        return np.log(size), np.array(rows) / (size * np.sign(found.nominal))
+
+
+def box_questions(config: Config, box: Box, keys: tuple[str, ...]) -> dict[str, Question]:
+    """The presses at all places but the nominal one, by their names; none where the path of the press matters.
+
+    config : on the mesh of these presses. InputError for a place that cannot be built.
+    """
+    factored = with_factors(config)
+    if path_matters(factored):
+        return {}
+    return {
+        f"all off at once, {number}": Question(config, keys, with_changes(factored, box.changes(place)))
+        for number, place in enumerate(box.places[1:], 1)
+    }
+
+
+def drawn(
+    box: Box, finer: Linear, coarser: Sequence[Linear], ends: Sequence[tuple[Response, Response]], draws: int = DRAWS
+) -> dict[str, Any] | None:
+    """Force and voltage at SHARES of the draws, and what the process misses of presses that are left out.
+
+    coarser : at the places of the box. ends : responses at the upper and lower end of quantities without slopes. None
+    where a force or voltage is nought or changes its sign, so that it has no logarithm.
+    """
+    signs = np.sign(finer.nominal)
+    responses = [one.nominal for one in coarser] + [end for pair in ends for end in pair]
+    if not signs.all() or any((np.sign(one) != signs).any() for one in responses):
+        return None
+    values, slopes = (np.array(part) for part in zip(*map(box.along, coarser), strict=True))
+    bent = slopes * (1.0 + box.relative * box.places)[:, :, None]
+    process = GradientProcess(box.logarithmic(box.places), values, bent)
+    random = np.random.default_rng(SEED + 1)
+    places = random.uniform(-1.0, 1.0, (draws, len(box.rows)))
+    value, slope = box.along(finer)
+    logarithmic = box.logarithmic(places)
+    logs = process.mean(logarithmic) + (value - values[0]) + logarithmic @ (slope - slopes[0])
+    for pair in ends:
+        up, down = (np.log(np.abs(end)) - value for end in pair)
+        off = random.uniform(-1.0, 1.0, (draws, 1))
+        logs += 0.5 * (up - down) * off + 0.5 * (up + down) * off**2
+    missed = 100.0 * np.sqrt((np.expm1(process.left_out().error) ** 2).mean(axis=0))
+    found = signs * np.exp(logs)
+    return {
+        "count": draws,
+        "presses": len(coarser),
+        "force_N": _percentiles(found[:, 0]),
+        "voltage_V": _percentiles(found[:, 1]),
+        "left_out_error": {"force_percent": float(missed[0]), "voltage_percent": float(missed[1])},
+    }
+
+
+def _percentiles(values: Floats) -> dict[str, float]:
+    """Values at SHARES, by name."""
+    found = np.quantile(values, SHARES)
+    return {f"below_{100 * share:g}_percent": float(one) for share, one in zip(SHARES, found, strict=True)}
