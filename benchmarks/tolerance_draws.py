@@ -48,8 +48,8 @@ def main(config_path: Path, count: int) -> None:
         for share, ours in zip(SHARES, drawn[name].values(), strict=True):
             full = float(np.quantile(found, share))
             print(
-                f"{name} {100 * share:g} %: draws {ours:.4g}, {count} presses {full:.4g} ± {jackknife(found, share):.2g}, "
-                f"off by {100 * (ours / full - 1):+.1f} %"
+                f"{name} {100 * share:g} %: draws {ours:.4g}, {count} presses {full:.4g} "
+                f"± {jackknife(found, share):.2g}, off by {100 * (ours / full - 1):+.1f} %"
             )
         print(f"{name} linear: {budget.nominal[part]:.4g} ± {budget.total[part]:.4g}; {drawn['left_out_error']}")
 
