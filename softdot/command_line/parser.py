@@ -7,7 +7,7 @@ from softdot.command_line.braille_reading import add_read
 from softdot.command_line.configurations import add_check, add_list, add_new, add_schema
 from softdot.command_line.exports import add_export
 from softdot.command_line.fabrication import add_kit, add_plate
-from softdot.command_line.presses import add_array, add_family, add_run, add_studio, add_sweep, add_verify
+from softdot.command_line.presses import add_array, add_family, add_goal, add_run, add_studio, add_sweep, add_verify
 from softdot.command_line.recordings import add_convert, add_diagnose, add_fit, add_material, add_scan
 from softdot.command_line.studies import add_paper, add_prove
 from softdot.console import BAD_INPUT, GOOD
@@ -59,6 +59,7 @@ def parser() -> argparse.ArgumentParser:
     add_paper(commands)
     add_sweep(commands)
     add_family(commands)
+    add_goal(commands)
     add_material(commands)
     add_scan(commands)
     add_convert(commands)

@@ -63,6 +63,55 @@ def add_family(commands: Any) -> None:
     add_output(family)
 
 
+def add_goal(commands: Any) -> None:
+    """Add the command softdot goal."""
+    goal = commands.add_parser(
+        "goal",
+        help="find the design of a family that gives enough for the least force",
+        description="Find the design of a family that gives enough of one quantity for the least of another, whatever "
+        "the batch, press it in full, and write it as a configuration.",
+        epilog="docs/family.md explains goals. Exit status 3 also where no design meets the goal. " + EXIT_STATUS,
+    )
+    goal.add_argument("family", metavar="FAM", help="folder of softdot family")
+    goal.add_argument(
+        "--reach", type=target, required=True, metavar="QUANTITY=VALUE",
+        help="what is to be reached at full load, without sign, such as open_circuit_voltage_V=10",
+    )  # fmt: skip
+    goal.add_argument(
+        "--least", default="reaction_force_N", metavar="QUANTITY", help="what is to be small; default: reaction_force_N"
+    )
+    goal.add_argument(
+        "--batch", action="append", default=[], metavar="KEY", help="drawn over its range, not chosen; may be repeated"
+    )
+    goal.add_argument(
+        "--probability", type=probability, default=0.95, metavar="P", help="with which it is reached; default: 0.95"
+    )
+    add_output(goal)
+
+
+def target(text: str) -> tuple[str, float]:
+    """QUANTITY=VALUE with a value above 0. ArgumentTypeError."""
+    name, _, value = text.partition("=")
+    try:
+        found = float(value)
+    except ValueError:
+        found = float("nan")
+    if not 0.0 < found < float("inf"):
+        raise ArgumentTypeError(f"'{text}' is not QUANTITY=VALUE with a number above 0")
+    return name.strip(), found
+
+
+def probability(text: str) -> float:
+    """A probability of 0.5 to 0.999. ArgumentTypeError."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not 0.5 <= value <= 0.999:
+        raise ArgumentTypeError(f"'{text}' is not between 0.5 and 0.999")
+    return value
+
+
 def percent(text: str) -> float:
     """A percentage between 0.01 and 50. ArgumentTypeError."""
     try:
