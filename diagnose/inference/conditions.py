@@ -9,6 +9,7 @@ from diagnose.noise.repeats import repeat_groups
 from foundation.arrays import Bools, Floats, Ints
 
 FEWEST_CONDITIONS = 3
+NEARLY_ALL = 0.95  # of the coefficients in one group: a sample or two of another phase are no condition
 MOST_FOLDS = 12  # groups of conditions that are left out in turn
 FARTHER = 0.05  # of the range of a drive: a condition that goes so much farther than all others is extrapolated to
 
@@ -21,6 +22,11 @@ class Conditions:
 
     fold: Ints
     judged: Bools
+
+    @property
+    def is_one(self) -> bool:
+        """Whether nearly all coefficients belong to one group: a single loading, beside which nothing is predicted."""
+        return bool(np.bincount(self.fold).max() >= NEARLY_ALL * len(self.fold))
 
 
 def conditions_of(samples: Samples) -> Conditions:

@@ -128,6 +128,7 @@ def evidence_of(found: Compared, detected: Checked, group: Sequence[int], held_o
         ordinary=all(one.candidate.is_ordinary(one.values) for one in best.fit.settings),
         implausible=implausible(best.fit),
         several=len(best.candidates) > 1,
+        untold_memory=judge.conditions.is_one and any(one.candidate.traits.memory for one in best.fit.settings),
     )
 
 

@@ -76,6 +76,7 @@ class Evidence:
     ordinary: bool = False
     implausible: tuple[str, ...] = ()
     several: bool = False
+    untold_memory: bool = False
 
     @property
     def beaten(self) -> bool:
@@ -164,6 +165,18 @@ def every_rig_has_it(e: Evidence) -> Verdict | None:
     return Unexplained((f"{e.best} is no more than what every rig has a little of, and so it is no finding.",))
 
 
+def one_loading_shows_no_memory(e: Evidence) -> Verdict | None:
+    """What depends on time or path cannot be told from what does not in one loading, and nothing was left out."""
+    if not e.untold_memory:
+        return None
+    return Unexplained(
+        (
+            f"The recording is a single loading, in which nothing could be left out. {e.best} comes closest to it, and "
+            "depends on time or path: another speed, a hold or a return has to show that.",
+        )
+    )
+
+
 def identified(e: Evidence) -> Verdict | None:
     """Few explanations are left, which account for all but flaws of a rig, and nothing flexible does better."""
     small = e.error <= THRESHOLDS.visible and e.share >= THRESHOLDS.confirmed
@@ -196,6 +209,7 @@ RULES: tuple[Callable[[Evidence], Verdict | None], ...] = (
     no_explanation,
     nothing_predicts,
     every_rig_has_it,
+    one_loading_shows_no_memory,
     identified,
     main_part,
     kind_only,

@@ -91,9 +91,9 @@ class Judge:
 
     def __init__(self, model: ObservedModel, found: Screening, discrepancy: RigDiscrepancy) -> None:
         self.model, self.found, self.discrepancy = model, found, discrepancy
-        conditions = conditions_of(model.samples)
-        self.scorer = HeldOutScorer(discrepancy, conditions)
-        self.errors = replace(discrepancy.errors, counted=conditions.judged[conditions.fold])
+        self.conditions = conditions_of(model.samples)
+        self.scorer = HeldOutScorer(discrepancy, self.conditions)
+        self.errors = replace(discrepancy.errors, counted=self.conditions.judged[self.conditions.fold])
 
     @cached_property
     def nothing(self) -> Hypothesis:

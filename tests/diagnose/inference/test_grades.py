@@ -48,6 +48,7 @@ EVIDENCE = st.builds(
     ordinary=st.booleans(),
     implausible=st.sampled_from([(), ("leak = 20",)]),
     several=st.booleans(),
+    untold_memory=st.booleans(),
 )
 
 
@@ -61,6 +62,7 @@ EVIDENCE = st.builds(
         (replace(CLEAR, nothing=0.2, error_before=0.009), Unexplained),
         (replace(CLEAR, nothing=0.2), Identified),  # what it takes away is visible, whatever is likelier in details
         (replace(CLEAR, ordinary=True), Unexplained),
+        (replace(CLEAR, untold_memory=True), Unexplained),  # one loading has one history
         (replace(CLEAR, group=3), Identified),
         (replace(CLEAR, group=4), KindOnly),
         (replace(CLEAR, group=4, kind=""), Unexplained),
@@ -99,6 +101,7 @@ def test_a_name_leaves_little_and_is_one_of_few(evidence):
         assert evidence.group <= THRESHOLDS.largest_group
         assert evidence.nothing <= THRESHOLDS.nothing or evidence.error_before > THRESHOLDS.visible
         assert not evidence.ordinary
+        assert not evidence.untold_memory
     if isinstance(verdict, Identified):
         assert evidence.error <= THRESHOLDS.visible or evidence.share >= THRESHOLDS.nearly_all
         assert evidence.error <= THRESHOLDS.left
