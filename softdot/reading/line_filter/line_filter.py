@@ -7,17 +7,19 @@ import numpy as np
 
 from foundation.arrays import Floats
 from softdot.reading.cells import DOTS
-from softdot.reading.line_filter.beam import MOST_CHILDREN, RARE_STEPS, Sensor, advance, predicted_charges, weighed
-from softdot.reading.line_filter.hypotheses import Beam, anywhere, early_settings, settings
+from softdot.reading.line_filter.beam import MOST_CHILDREN, RARE_STEPS, advance, weighed
+from softdot.reading.line_filter.evidence import predicted_charges
+from softdot.reading.line_filter.givens import Sensor
+from softdot.reading.line_filter.hypotheses import Beam, around, early_settings, settings
 from softdot.reading.line_filter.hypothesis_arrays import (
     COLUMNS,
     HEIGHT,
     KEPT_COLUMNS,
     KEPT_HEIGHTS,
+    LATERAL,
     LEVEL,
     LOG_SPEED,
     LOG_WEIGHT,
-    OFFSET,
     PLACE,
     ROWS,
     SEEN,
@@ -28,7 +30,8 @@ from softdot.reading.line_filter.hypothesis_arrays import (
     WAY,
     YAW,
 )
-from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, LineTable
+from softdot.reading.line_filter.lateral import LINE_A, WANDER
+from softdot.reading.line_filter.table import YAWS_DEG, LineTable
 
 LAG_COLUMNS, FIRST_COLUMNS = 4, 12
 """Columns that must follow a cell before it is given out, and least number of all: posture and heights come first."""
@@ -50,8 +53,6 @@ HEIGHTS_PRIOR, HEIGHTS_MEMORY, KNOWN_SPREAD, HEIGHT_SPREADS = 10.0, 60.0, 0.03, 
 """Of the heights of a line's dots: weight of what was assumed and memory, both in dots, largest variance of one that
 counts, and least and largest variance of all.
 """
-BETWEEN_ROWS = 0.45
-"""Offset over the pitch of rows from which the array is between them."""
 NEAR_MM = 3.0
 """Way from the middle of a cell within which the fit counts for it."""
 
@@ -59,8 +60,8 @@ NEAR_MM = 3.0
 @dataclass(frozen=True)
 class PassedCell:
     """A cell as the hypotheses have it: number, the most likely one (-1 where none was seen), its probability, time
-    at which the array's middle passed it, the worst fit meanwhile, and whether the array was half a row aside, where
-    every dot lies between two rows of segments and each side looks like the other. shares (64,) : probability of each.
+    at which the array's middle passed it, the worst fit meanwhile, and the largest distance of the array's middle from
+    the middle row meanwhile. shares (64,) : probability of each.
     """
 
     number: int
@@ -68,7 +69,7 @@ class PassedCell:
     probability: float
     time_s: float
     worst_fit: float
-    is_between_rows: bool
+    aside_mm: float
     shares: Floats
 
 
@@ -103,7 +104,7 @@ class LineFilter:
         self._early = early_settings(self.step_s, self.table.is_mirrored)
         self._steps, self._is_early = 0, True
         self._room = (
-            np.empty((MOST_CHILDREN, 4)), np.empty((MOST_CHILDREN, 6), dtype=np.int64),
+            np.empty((MOST_CHILDREN, 4)), np.empty((MOST_CHILDREN, 5), dtype=np.int64),
             np.empty(MOST_CHILDREN, dtype=np.int64), np.empty(MOST_CHILDREN, dtype=np.int64),
         )  # fmt: skip
         prior = GAIN_PRIOR_S / self.step_s * (0.3 * self.table.largest_pC) ** 2
@@ -140,7 +141,8 @@ class LineFilter:
     @property
     def offset_mm(self) -> float:
         """Distance of the array's middle from the middle row."""
-        return float(OFFSETS_MM[self.hypotheses.choice[self._best, OFFSET]])
+        memory = self.hypotheses.memory[self._best]
+        return float(memory[LATERAL + LINE_A] + memory[LATERAL + WANDER])
 
     @property
     def yaw_deg(self) -> float:
@@ -240,7 +242,7 @@ class LineFilter:
         self.losses += 1
         assert self._safe_drift is not None
         best = replace(self.best, memory=np.concatenate([self.best.memory[:, :LEVEL], self._safe_drift[None]], axis=1))
-        fresh = anywhere(self.table, best, self._safe_log_speed + np.linspace(-1.0, 1.0, 7))
+        fresh = around(self.table, best, self._safe_log_speed + np.linspace(-1.0, 1.0, 7))
         state, choice, memory = weighed(fresh.state, fresh.choice, fresh.memory, charge_pC, self.sensor, self._settings)
         known = self.hypotheses
         state[:, LOG_WEIGHT] += known.state[self._best, LOG_WEIGHT] - state[:, LOG_WEIGHT].max()
@@ -272,12 +274,12 @@ class LineFilter:
         share = np.bincount(np.where(known, (first & 7) | (second & 7) << 3, 64), weight, 1 << DOTS | 1)
         cell = int(np.argmax(share[:64]))
         fit = self._fits.pop(number, self.fit)
-        between = self._asides.pop(number, 0.0) > BETWEEN_ROWS * self.table.dot_pitch_mm
+        aside = self._asides.pop(number, 0.0)
         time = self._times.popleft() if self._times else self._now_s
         if share[64] >= 0.5:
-            return PassedCell(number, -1, 0.0, time, fit, between, np.full(64, 1.0 / 64.0))
+            return PassedCell(number, -1, 0.0, time, fit, aside, np.full(64, 1.0 / 64.0))
         shares = share[:64] + share[64] / 64.0
-        return PassedCell(number, cell, float(share[cell]), time, fit, between, shares)
+        return PassedCell(number, cell, float(share[cell]), time, fit, aside, shares)
 
 
 def _column(columns: np.ndarray, seen: np.ndarray, number: int) -> np.ndarray:

@@ -9,14 +9,13 @@ from foundation.errors import InputError
 from geometry.braille_standards import BrailleStandard
 from softdot.arrays.kernel import ArrayKernel
 from softdot.reading.cells import KINDS_OF_CELL
-from softdot.reading.line_filter.beam import Sensor
 from softdot.reading.line_filter.channels import Channels, first_signal, measured_channels
 from softdot.reading.line_filter.charge import ChargeBlocks
-from softdot.reading.line_filter.hypotheses import Beam, anywhere, at_the_first_column
-from softdot.reading.line_filter.hypothesis_arrays import LEVEL
+from softdot.reading.line_filter.givens import Sensor
+from softdot.reading.line_filter.hypotheses import at_the_first_column, inside
 from softdot.reading.line_filter.line_filter import FLOOR_SHARE, LOST_FIT, LineFilter, PassedCell
 from softdot.reading.line_filter.mains import BANDWIDTH_HZ, FREQUENCY, hum_frequency_Hz, hum_state, without_hum
-from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, LineTable, line_table
+from softdot.reading.line_filter.table import LineTable, line_table
 from solve.model import Readout
 from solve.readout.amplifier import input_of
 
@@ -34,8 +33,8 @@ DRIFT_SHARE = 7e-4
 """Least standard deviation of the drift in a step, over the largest charge of one dot."""
 SLOPE_V_PER_S, SLOPES = 3e-4, 2.0
 """By how much a resting voltage is taken to change in a second, at least and over what the first seconds say."""
-LOST_PROBABILITY, ASIDE_PROBABILITY = 0.5, 0.85
-"""Of a cell at most where the fit was bad, and where the array was between two rows of dots."""
+LOST_PROBABILITY = 0.5
+"""Of a cell at most where the fit was bad."""
 CERTAIN = 0.9
 """Least probability of a cell that is given out as read."""
 MIRRORED = np.arange(KINDS_OF_CELL) >> 3 | (np.arange(KINDS_OF_CELL) & 7) << 3
@@ -213,14 +212,8 @@ class LineReader:
             table.lone, table.beside, table.within, table.dot_pitch_mm, table.cell_pitch_mm, channels.alive,
             np.ones(count), floor, drift, bend,
         )  # fmt: skip
-        if channels.is_inside:
-            middle = Beam(
-                np.array([[0.5 * table.cell_pitch_mm, 0.0, 0.0, 0.0]]),
-                np.array([[1, len(OFFSETS_MM) // 2, len(YAWS_DEG) // 2, 1, 0, 0]]), np.zeros((1, LEVEL + 2 * count)),
-            )  # fmt: skip
-            start = anywhere(table, middle, np.log(channels.speed_mm_per_s) + np.linspace(-1.0, 1.0, 9))
-        else:
-            start = at_the_first_column(table, channels.speed_mm_per_s, count)
+        begin = inside if channels.is_inside else at_the_first_column
+        start = begin(table, channels.speed_mm_per_s, count)
         return LineFilter(table, sensor, step_s, start)
 
     def _read_on(self, at_end: bool) -> list[ReadCell]:
@@ -287,10 +280,10 @@ class LineReader:
 
 
 def stated_probability(passed: PassedCell) -> float:
-    """The probability that a cell is right: that of the hypotheses, less where the fit was bad or the array aside."""
+    """The probability that a cell is right: that of the hypotheses, less where the fit was bad."""
     if passed.worst_fit > LOST_FIT:
         return min(passed.probability, LOST_PROBABILITY)
-    return min(passed.probability, ASIDE_PROBABILITY) if passed.is_between_rows else passed.probability
+    return passed.probability
 
 
 def _circuit(kernel: ArrayKernel, readout: Readout, used: np.ndarray) -> tuple[Floats, Floats]:

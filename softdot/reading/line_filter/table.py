@@ -19,8 +19,8 @@ from softdot.reading.line import cell_pitch_mm, dot_places_mm
 
 PLACES, COARSER = 120, 3
 """Places of the array within a cell pitch, and of how many one is pressed with several dots at once."""
-OFFSETS_MM = np.round(np.arange(-1.4, 1.41, 0.2), 3)
-"""Distances of the array's middle from the middle row."""
+OFFSETS_MM = np.round(np.arange(-2.8, 2.81, 0.2), 3)
+"""Distances of the array's middle from the middle row, to where its rows see the next rows of dots."""
 YAWS_DEG = np.arange(-20.0, 20.1, 5.0)
 """Turns of the array against the line."""
 ROWS = DOTS // 2
