@@ -46,10 +46,11 @@ OLD_MM = 1.8
 
 
 @nb.njit(cache=True)
-def advance(state, choice, memory, measured, temper, may_touch, turn, sensor, settings, room):  # type: ignore[no-untyped-def]
+def advance(state, choice, memory, measured, temper, may_touch, turn, open_bits, sensor, settings, room):  # type: ignore[no-untyped-def]
     """The hypotheses after a step with the charges measured (n,), and the logarithm of their evidence.
 
-    temper : exponent of the likelihood. may_touch : whether lost contact may be found again. turn : of what is rare.
+    temper : exponent of the likelihood. may_touch : whether lost contact may be found again. turn : of what is rare. open_bits :
+    mask of the columns that are not given out yet.
     room : four arrays for children, state (m, 4), choice (m, 5), number of the parent (m,) and bits of new columns.
     """
     made, made_choice, parent, fresh = room
@@ -72,7 +73,7 @@ def advance(state, choice, memory, measured, temper, may_touch, turn, sensor, se
             )  # fmt: skip
             for child in range(begin, count):
                 parent[child] = h
-    agreed = merged(made, made_choice, memory, parent, count, top)
+    agreed = merged(made, made_choice, memory, parent, count, top, open_bits)
     before = state[:, PLACE]
     weight = _weigh(made, made_choice, memory, before, parent, fresh, agreed, measured, temper, sensor, settings)
     chosen = agreed[_best_ones(weight, settings)]

@@ -161,7 +161,7 @@ class LineFilter:
         largest = np.abs(charge_pC - self._level(known.memory[self._best])).max()
         state, choice, memory, evidence = advance(
             known.state, known.choice, known.memory, charge_pC, temper,
-            bool(largest > TOUCH_SHARE * self.table.largest_pC), self._steps % RARE_STEPS, self.sensor,
+            bool(largest > TOUCH_SHARE * self.table.largest_pC), self._steps % RARE_STEPS, self._open_bits, self.sensor,
             self._early if self._is_early else self._settings, self._room,
         )  # fmt: skip
         self._steps += 1
@@ -174,6 +174,12 @@ class LineFilter:
         self._learn(charge_pC)
         self._note_time(time_s)
         self._look_for_the_track(charge_pC)
+
+    @property
+    def _open_bits(self) -> int:
+        """Mask of the columns that are not given out yet, and of those in the window."""
+        count = min(max(self.columns_seen - 2 * self.emitted, LAG_COLUMNS), KEPT_COLUMNS - 1)
+        return (1 << 4 * count) - 1
 
     def _level(self, memory: Floats) -> Floats:
         """The drift (n,) of each channel in a memory."""
