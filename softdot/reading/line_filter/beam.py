@@ -49,8 +49,8 @@ OLD_MM = 1.8
 def advance(state, choice, memory, measured, temper, may_touch, turn, open_bits, sensor, settings, room):  # type: ignore[no-untyped-def]
     """The hypotheses after a step with the charges measured (n,), and the logarithm of their evidence.
 
-    temper : exponent of the likelihood. may_touch : whether lost contact may be found again. turn : of what is rare. open_bits :
-    mask of the columns that are not given out yet.
+    temper : exponent of the likelihood. may_touch : whether lost contact may be found again. turn : of what is rare.
+    open_bits : mask of the columns that are not given out yet.
     room : four arrays for children, state (m, 4), choice (m, 5), number of the parent (m,) and bits of new columns.
     """
     made, made_choice, parent, fresh = room
@@ -89,7 +89,7 @@ def _weigh(made, made_choice, memory, before, parent, fresh, agreed, measured, t
 
     before : places along the line of their parents.
     """
-    found, rest, aside = np.empty((4, 2 * ROWS)), np.empty(measured.shape[0]), np.empty(9)
+    found, channel, aside = np.empty((4, 2 * ROWS)), np.empty((3, measured.shape[0])), np.empty(9)
     weight = np.empty(len(agreed))
     for k in range(len(agreed)):
         child = agreed[k]
@@ -99,7 +99,7 @@ def _weigh(made, made_choice, memory, before, parent, fresh, agreed, measured, t
         move_aside(memory, own, made[child, PLACE] - before[own], settings.fade, aside)
         at = (made_choice[child, YAW], row)
         made[child, LOG_WEIGHT] += log_evidence(
-            memory, own, at, pattern, found, dots, aside, measured, temper, sensor, settings, rest
+            memory, own, at, pattern, found, dots, aside, measured, temper, sensor, settings, channel
         )  # fmt: skip
         weight[k] = made[child, LOG_WEIGHT]
     return weight

@@ -32,6 +32,8 @@ LARGEST_RESIDUAL = 3.0
 """Standard deviations that the drift takes from one residual at most."""
 LEAST_SPREAD = 0.04**2
 """Least variance of a height."""
+GAIN_SPREAD, LEAST_GAIN_SPREAD, WIDEST_GAIN = 0.2**2, 0.03**2, 2.5
+"""Variance of a gain before anything was seen (assumed) and the least one, and largest factor of a gain."""
 REAR, FRONT = 1, 2
 """Bits of the columns in the window that a hypothesis meets for the first time."""
 
@@ -65,11 +67,12 @@ def take_heights(memory, h, first, pattern, fresh, settings, found):  # type: ig
 
 
 @piece(MATH)
-def log_evidence(memory, h, at, pattern, found, count, aside, measured, temper, sensor, settings, rest):  # type: ignore[no-untyped-def]
+def log_evidence(memory, h, at, pattern, found, count, aside, measured, temper, sensor, settings, channel):  # type: ignore[no-untyped-def]
     """Log-likelihood of the charges measured (n,), channel after channel; at : yaw and row in the table.
 
     Heights and spreads of the dots that were found (4, count), and the lateral place (9,), are moved on by the Kalman
-    filter; rest (n,) is what is left of the charges but for single dots. Student's t, whose scale grows with the
+    filter; channel (3, n) is filled with what is left of the charges but for single dots, and with gains and their
+    variances. Student's t, whose scale grows with the
     charge; temper weakens it.
     """
     yaw, row = at
@@ -82,10 +85,12 @@ def log_evidence(memory, h, at, pattern, found, count, aside, measured, temper, 
     mean = mean / count if count else 0.0
     widths, spreads, tails = 1.0, 1.0, 1.0
     for j in range(channels):
-        rest[j] = measured[j] - memory[h, LEVEL + j] - settings.step_s * memory[h, LEVEL + channels + j]
+        rest = measured[j] - memory[h, LEVEL + j] - settings.step_s * memory[h, LEVEL + channels + j]
+        gain, gain_spread = memory[h, LEVEL + 2 * channels + j], memory[h, LEVEL + 3 * channels + j]
+        gain_spread = min(gain_spread + settings.gain_walk, GAIN_SPREAD)
+        channel[0, j], channel[1, j], channel[2, j] = rest, gain, gain_spread
         if not sensor.alive[j]:
             continue
-        gain = sensor.gain[j]
         low, high = sensor.beside[row, offset, pattern, j], sensor.beside[row, offset + 1, pattern, j]
         more, charge, spread = gain * mean * (low + share * (high - low)), 0.0, 0.0
         slope = gain * mean * per_mm * (high - low)
@@ -97,10 +102,11 @@ def log_evidence(memory, h, at, pattern, found, count, aside, measured, temper, 
             charge += one * found[1, k]
             spread += one * one * found[2, k]
             slope += gain * per_mm * (high - low) * found[1, k]
-        rest[j] -= more
-        residual = rest[j] - charge - slope * (aside[LINE_A] + aside[WANDER] - before)
+        channel[0, j] -= more
+        residual = rest - more - charge - slope * (aside[LINE_A] + aside[WANDER] - before)
+        per_gain = (charge + more) / gain
         variance = sensor.floor_pC2[j] + (settings.rough * (charge + more)) ** 2
-        whole = variance + temper * (spread + slope * slope * place_spread(aside))
+        whole = variance + temper * (spread + slope * slope * place_spread(aside) + per_gain * per_gain * gain_spread)
         unit = residual * residual / (settings.degrees * whole)
         widths *= variance
         spreads *= whole / variance
@@ -110,6 +116,9 @@ def log_evidence(memory, h, at, pattern, found, count, aside, measured, temper, 
             own = found[3, k] * found[2, k] * temper / whole
             found[1, k] += own * believed
             found[2, k] = max(found[2, k] * (1.0 - own * found[3, k]), LEAST_SPREAD)
+        own = per_gain * gain_spread * temper / whole
+        channel[1, j] = min(max(gain + own * believed, 1.0 / WIDEST_GAIN), WIDEST_GAIN)
+        channel[2, j] = max(gain_spread * (1.0 - own * per_gain), LEAST_GAIN_SPREAD)
         see(aside, temper * slope / whole, believed, slope)
     return -0.5 * temper * (np.log(widths) + (settings.degrees + 1.0) * np.log(tails)) - 0.5 * np.log(spreads)
 
@@ -130,19 +139,19 @@ def pattern_of(place, choice, h, sensor):  # type: ignore[no-untyped-def]
 
 @nb.njit(cache=True)
 def remember(state, choice, memory, before, fresh, measured, temper, sensor, settings):  # type: ignore[no-untyped-def]
-    """Move the memories (h, 33 + 2 n) on: heights, lateral place, and level and rate of the drift by a steady filter.
+    """Move the memories (h, 33 + 4 n) on: heights, lateral place, gains, and the drift by a steady filter.
 
     before (h,) : the places along the line that the memories are of.
     """
     channels = measured.shape[0]
-    found, rest, aside = np.empty((4, 2 * ROWS)), np.empty(channels), np.empty(9)
+    found, channel, aside = np.empty((4, 2 * ROWS)), np.empty((3, channels)), np.empty(9)
     for h in range(state.shape[0]):
         row, first, pattern = pattern_of(state[h, PLACE], choice, h, sensor)
         yaw = choice[h, YAW]
         count = take_heights(memory, h, first, pattern, fresh[h], settings, found)
         move_aside(memory, h, state[h, PLACE] - before[h], settings.fade, aside)
         log_evidence(
-            memory, h, (yaw, row), pattern, found, count, aside, measured, temper, sensor, settings, rest
+            memory, h, (yaw, row), pattern, found, count, aside, measured, temper, sensor, settings, channel
         )  # fmt: skip
         memory[h, LATERAL:LEVEL] = aside
         for k in range(count):
@@ -155,9 +164,10 @@ def remember(state, choice, memory, before, fresh, measured, temper, sensor, set
             for k in range(count):
                 dot = int(found[0, k])
                 low, high = sensor.lone[yaw, row, offset, dot, j], sensor.lone[yaw, row, offset + 1, dot, j]
-                charge += sensor.gain[j] * (low + share * (high - low)) * found[1, k]
+                charge += channel[1, j] * (low + share * (high - low)) * found[1, k]
             width = np.sqrt((sensor.floor_pC2[j] + (settings.rough * charge) ** 2) / temper)
-            residual = min(max(rest[j] - charge, -LARGEST_RESIDUAL * width), LARGEST_RESIDUAL * width)
+            residual = min(max(channel[0, j] - charge, -LARGEST_RESIDUAL * width), LARGEST_RESIDUAL * width)
+            memory[h, LEVEL + 2 * channels + j], memory[h, LEVEL + 3 * channels + j] = channel[1, j], channel[2, j]
             bend = sensor.bend_pC[j] / (width + sensor.bend_pC[j])
             level = min(1.0, np.sqrt(2.0 * bend + sensor.drift_pC[j] ** 2 / (sensor.drift_pC[j] ** 2 + width**2)))
             memory[h, LEVEL + j] += settings.step_s * memory[h, LEVEL + channels + j] + level * residual
@@ -166,10 +176,10 @@ def remember(state, choice, memory, before, fresh, measured, temper, sensor, set
 
 @nb.njit(cache=True)
 def predicted_charges(state, choice, memory, sensor):  # type: ignore[no-untyped-def]
-    """Charges (n,) of the first hypothesis, without gain and drift."""
+    """Charges (n,) of the first hypothesis, without drift."""
     row, first, pattern = pattern_of(state[0, PLACE], choice, 0, sensor)
     yaw, (offset, share, _) = choice[0, YAW], table_offset(lateral_place(memory, 0))
-    charge = np.zeros(sensor.gain.shape[0])
+    charge = np.zeros(sensor.lone.shape[4])
     count, mean = 0, 0.0
     for dot in range(2 * ROWS):
         if pattern >> dot & 1:
@@ -181,4 +191,4 @@ def predicted_charges(state, choice, memory, sensor):  # type: ignore[no-untyped
     if count:
         low, high = sensor.beside[row, offset, pattern], sensor.beside[row, offset + 1, pattern]
         charge += mean / count * (low + share * (high - low))
-    return charge
+    return charge * memory[0, LEVEL + 2 * len(charge) : LEVEL + 3 * len(charge)]

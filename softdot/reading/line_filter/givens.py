@@ -6,8 +6,8 @@ from foundation.arrays import Bools, Floats
 
 
 class Sensor(NamedTuple):
-    """What the charges are compared with: charges of single dots, what dots beside each other add, pitches, and gain,
-    floor of the variance and drift of each channel (n,).
+    """What the charges are compared with: charges of single dots, what dots beside each other add, pitches, and floor
+    of the variance and drift of each channel (n,).
 
     drift_pC, bend_pC : standard deviations in a step of the walk of the drift, and of its way per step.
     """
@@ -18,7 +18,6 @@ class Sensor(NamedTuple):
     dot_pitch_mm: float
     cell_pitch_mm: float
     alive: Bools
-    gain: Floats
     floor_pC2: Floats
     drift_pC: Floats
     bend_pC: Floats
@@ -31,7 +30,8 @@ class HandMotion(NamedTuple):
     step. log_blank, log_dots (4,) : of a blank column, and of each other pattern, by kind_before. log_unseen :
     of one that passes without contact. height, height_spread : mean and variance of the height of dots, as shares of
     the nominal charge. rough : standard deviation of a charge over the charge; degrees : of Student's t. fade : what
-    is left of a wander across the line. kept_log, most_kept : how far behind the best, and how many hypotheses are kept.
+    is left of a wander across the line. gain_walk : variance by which a gain may change. kept_log, most_kept : how far
+    behind the best, and how many hypotheses are kept.
     """
 
     step_s: float
@@ -55,5 +55,6 @@ class HandMotion(NamedTuple):
     rough: float
     degrees: float
     fade: float
+    gain_walk: float
     kept_log: float
     most_kept: int

@@ -9,6 +9,7 @@ import numpy as np
 
 from foundation.arrays import Floats, Ints
 from softdot.reading.line_filter.beam import RARE_STEPS
+from softdot.reading.line_filter.evidence import GAIN_SPREAD
 from softdot.reading.line_filter.givens import HandMotion
 from softdot.reading.line_filter.hypothesis_arrays import (
     COLUMNS,
@@ -52,6 +53,8 @@ YAW_SPREAD_DEG = 6.0
 """Standard deviation of the turn of the array at the beginning, assumed."""
 FARTHEST_ASIDE_MM, ASIDE_SPREAD_MM = 2.4, 0.2
 """Lateral places with which a line begins, and the standard deviation of each: they are twice as far apart."""
+GAIN_WALK = 0.02
+"""By how much a gain changes in the root of a second, assumed."""
 ROW_BESIDE = 0.1
 """Share of lost tracks in which the array lay one row of dots farther than was thought, to each side: assumed."""
 FIRST_COLUMN = 0.85
@@ -60,7 +63,7 @@ FIRST_COLUMN = 0.85
 
 @dataclass
 class Beam:
-    """Rows of state (h, 4), choice (h, 5) and memory (h, 33 + 2 n) (hypothesis_arrays)."""
+    """Rows of state (h, 4), choice (h, 5) and memory (h, 33 + 4 n) (hypothesis_arrays)."""
 
     state: Floats
     choice: Ints
@@ -98,6 +101,7 @@ def settings(step_s: float, is_mirrored: bool) -> HandMotion:
         height_spread=HEIGHT_SPREAD**2,
         rough=ROUGH_SHARE,
         degrees=DEGREES,
+        gain_walk=GAIN_WALK**2 * step_s,
         fade=exp(-step_s / WANDER_S),
         kept_log=KEPT_LOG,
         most_kept=MOST_KEPT,
@@ -132,7 +136,7 @@ def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) 
             rows.append((column_mm(table, column) - entry, speed, speed, chance + log_aside + turned))
             chosen.append((FORTH, yaw, 1, column + 1, pattern))
             asides.append(aside)
-    memory = _memory(np.array(asides), np.zeros(2 * channels))
+    memory = _memory(np.array(asides), _channels(channels))
     return Beam(np.array(rows), np.array(chosen, dtype=np.int64), memory)
 
 
@@ -154,11 +158,16 @@ def _places_beside(aside: Floats, row_mm: float) -> list[tuple[Floats, float]]:
     return found
 
 
-def _memory(asides: Floats, drift: Floats) -> Floats:
-    """Memories (h, 33 + 2 n) in which nothing is known of any dot, with lateral places (h, 9) and one drift (2 n,)."""
-    known = np.empty((len(asides), LEVEL + len(drift)))
+def _channels(count: int) -> Floats:
+    """Level and rate of the drift, gain and its variance (4 n,) of channels of which nothing is known."""
+    return np.concatenate([np.zeros(2 * count), np.ones(count), np.full(count, GAIN_SPREAD)])
+
+
+def _memory(asides: Floats, channels: Floats) -> Floats:
+    """Memories (h, 33 + 4 n) in which nothing is known of any dot, with lateral places (h, 9) and one of the channels (4 n,)."""
+    known = np.empty((len(asides), LEVEL + len(channels)))
     known[:, HEIGHT:SPREAD], known[:, SPREAD:LATERAL] = HEIGHT_MEAN, HEIGHT_SPREAD**2
-    known[:, LATERAL:LEVEL], known[:, LEVEL:] = asides, drift
+    known[:, LATERAL:LEVEL], known[:, LEVEL:] = asides, channels
     return known
 
 
@@ -171,20 +180,25 @@ def inside(table: LineTable, speed_mm_per_s: float, channels: int) -> Beam:
     yaw = len(YAWS_DEG) // 2
     nowhere = np.array([FORTH, yaw, 1, 0, 0])
     speeds = np.log(speed_mm_per_s) + np.linspace(-1.0, 1.0, 9)
-    return _anywhere(table, 0.5 * table.cell_pitch_mm, nowhere, speeds, _lateral_places(), np.zeros(2 * channels))
+    return _anywhere(table, 0.5 * table.cell_pitch_mm, nowhere, speeds, _lateral_places(), _channels(channels))
 
 
 def around(table: LineTable, best: Beam, speeds: Floats) -> Beam:
     """Around the place of one hypothesis, within half a cell to each side: any two columns, near postures and speeds.
 
-    speeds (s,) : logarithms. Of the one hypothesis place, posture and drift are taken.
+    speeds (s,) : logarithms. Of the one hypothesis place, posture, drift and gains are taken.
     """
     asides = _places_beside(best.memory[0, LATERAL:LEVEL], table.dot_pitch_mm)
     return _anywhere(table, float(best.state[0, PLACE]), best.choice[0], speeds, asides, best.memory[0, LEVEL:])
 
 
 def _anywhere(
-    table: LineTable, middle_mm: float, known: Ints, speeds: Floats, asides: list[tuple[Floats, float]], drift: Floats
+    table: LineTable,
+    middle_mm: float,
+    known: Ints,
+    speeds: Floats,
+    asides: list[tuple[Floats, float]],
+    channels: Floats,
 ) -> Beam:
     """Hypotheses within half a cell of a place, with what a choice (5,) knows of the columns before, and its yaw."""
     pitch = table.cell_pitch_mm
@@ -196,7 +210,7 @@ def _anywhere(
             own = columns & ~0xFF | pattern >> 3 | (pattern & 7) << 4
             chosen.append((FORTH, known[YAW], 1, seen, own))
             own_asides.append(aside)
-    memory = _memory(np.array(own_asides), drift)
+    memory = _memory(np.array(own_asides), channels)
     return Beam(np.array(rows), np.array(chosen, dtype=np.int64), memory)
 
 

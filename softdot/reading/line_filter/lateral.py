@@ -44,7 +44,7 @@ def lateral_place(memory, h):  # type: ignore[no-untyped-def]
 
 @piece()
 def move_aside(memory, h, way, fade, moved):  # type: ignore[no-untyped-def]
-    """Fill moved (9,) with means and covariances after a way in mm; fade : what is left of the wander after the time."""
+    """Fill moved (9,) with means and covariances after a way in mm; fade : what is left of the wander by then."""
     a, b, w = memory[h, LATERAL + LINE_A], memory[h, LATERAL + LINE_B], memory[h, LATERAL + WANDER]
     ab, aw, bb = memory[h, LATERAL + COV_AB], memory[h, LATERAL + COV_AW], memory[h, LATERAL + VAR_B]
     bw, ww = memory[h, LATERAL + COV_BW], memory[h, LATERAL + VAR_W]

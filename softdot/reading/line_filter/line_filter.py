@@ -45,8 +45,6 @@ LOST_FIT, FOUND_FIT = 4.0, 2.0
 """Mean squared residuals in their variance above which a track is lost, and below which it is found again."""
 PATIENCE_S = 0.6
 """Time that a new start has before the next one."""
-GAIN_S, GAIN_PRIOR_S, WIDEST_GAIN = 8.0, 2.0, 2.0
-"""Memory of the gains that are followed, weight of the first ones, and how far they may go from these."""
 EARLY_SHARE, EARLY_STEPS = 0.6, 40
 """More hypotheses are kept until a charge reaches this share of the largest one of a dot, for so many steps at most."""
 HEIGHTS_PRIOR, HEIGHTS_MEMORY, KNOWN_SPREAD, HEIGHT_SPREADS = 10.0, 60.0, 0.03, (0.1**2, 0.4**2)
@@ -91,15 +89,12 @@ class LineFilter:
     _now_s: float = 0.0
     _patience_s: float = 0.0
     _times: deque[float] = field(default_factory=deque)
-    _safe_drift: Floats | None = None
     _safe_log_speed: float = 0.0
     _fits: dict[int, float] = field(default_factory=dict)
     _asides: dict[int, float] = field(default_factory=dict)
-    _products: Floats | None = None
 
     def __post_init__(self) -> None:
-        """Make room for children and products."""
-        channels = self.table.lone.shape[-1]
+        """Make room for children."""
         self._settings = settings(self.step_s, self.table.is_mirrored)
         self._early = early_settings(self.step_s, self.table.is_mirrored)
         self._steps, self._is_early = 0, True
@@ -107,13 +102,11 @@ class LineFilter:
             np.empty((MOST_CHILDREN, 4)), np.empty((MOST_CHILDREN, 5), dtype=np.int64),
             np.empty(MOST_CHILDREN, dtype=np.int64), np.empty(MOST_CHILDREN, dtype=np.int64),
         )  # fmt: skip
-        prior = GAIN_PRIOR_S / self.step_s * (0.3 * self.table.largest_pC) ** 2
-        self._products = np.full((2, channels), prior)
         self._best = 0
         first, second = self._settings.height, self._settings.height_spread + self._settings.height**2
         self._prior_heights = HEIGHTS_PRIOR * np.array([1.0, first, second])
         self._heights = self._prior_heights.copy()
-        self._safe_drift = self.hypotheses.memory[0, LEVEL:]
+        self._safe_channels = self.hypotheses.memory[0, LEVEL:]
         self._safe_log_speed = float(self.hypotheses.state[:, LOG_SPEED].mean())
 
     @property
@@ -181,6 +174,12 @@ class LineFilter:
         count = min(max(self.columns_seen - 2 * self.emitted, LAG_COLUMNS), KEPT_COLUMNS - 1)
         return (1 << 4 * count) - 1
 
+    @property
+    def gain(self) -> Floats:
+        """Gain (n,) of each channel of the most likely hypothesis over that of the first seconds."""
+        count = self.table.lone.shape[-1]
+        return self.hypotheses.memory[self._best, LEVEL + 2 * count : LEVEL + 3 * count]
+
     def _level(self, memory: Floats) -> Floats:
         """The drift (n,) of each channel in a memory."""
         return memory[LEVEL : LEVEL + self.table.lone.shape[-1]]
@@ -202,27 +201,17 @@ class LineFilter:
         self._settings = self._settings._replace(height=float(first / count), height_spread=spread)
 
     def _learn(self, charge_pC: Floats) -> None:
-        """Follow fit and gains by the best hypothesis."""
-        predicted = predicted_charges(self.best.state, self.best.choice, self.best.memory, self.sensor)
-        heard = charge_pC - self._level(self.hypotheses.memory[self._best])
-        alive, gain = self.sensor.alive, self.sensor.gain
-        residual = heard - gain * predicted
+        """Follow the fit of the best hypothesis, and keep drift, gains and speed of where it is good."""
+        known, alive = self.best, self.sensor.alive
+        predicted = predicted_charges(known.state, known.choice, known.memory, self.sensor)
+        residual = charge_pC - self._level(known.memory[0]) - predicted
         variance = self.sensor.floor_pC2 + (self._settings.rough * predicted) ** 2
         share = min(self.step_s / FIT_S, 1.0)
         square = float(np.mean(np.minimum(residual[alive] ** 2 / variance[alive], 50.0)))
         self.fit += share * (square - self.fit)
         if self.fit < FOUND_FIT and self.speed_mm_per_s != 0.0 and self.touching:
-            assert self._products is not None
-            assert self._safe_drift is not None
-            known = self.best
-            self._safe_drift = self._safe_drift + share * (known.memory[0, LEVEL:] - self._safe_drift)
+            self._safe_channels = self._safe_channels + share * (known.memory[0, LEVEL:] - self._safe_channels)
             self._safe_log_speed += share * (float(known.state[0, LOG_SPEED]) - self._safe_log_speed)
-            fade = 1.0 - self.step_s / GAIN_S
-            fair = np.abs(residual) < 4.0 * np.sqrt(variance)
-            self._products = fade * self._products + fair * np.stack([predicted * heard, predicted**2])
-            prior = (1.0 - fade) * GAIN_PRIOR_S / self.step_s * (0.3 * self.table.largest_pC) ** 2
-            self._products += prior
-            gain[:] = np.clip(self._products[0] / self._products[1], 1.0 / WIDEST_GAIN, WIDEST_GAIN)
 
     def _note_time(self, time_s: float) -> None:
         """Note the time at which the best hypothesis first passes a cell, and the fit around it."""
@@ -246,8 +235,9 @@ class LineFilter:
             return
         self.is_lost, self._patience_s = True, PATIENCE_S
         self.losses += 1
-        assert self._safe_drift is not None
-        best = replace(self.best, memory=np.concatenate([self.best.memory[:, :LEVEL], self._safe_drift[None]], axis=1))
+        best = replace(
+            self.best, memory=np.concatenate([self.best.memory[:, :LEVEL], self._safe_channels[None]], axis=1)
+        )
         fresh = around(self.table, best, self._safe_log_speed + np.linspace(-1.0, 1.0, 7))
         state, choice, memory = weighed(fresh.state, fresh.choice, fresh.memory, charge_pC, self.sensor, self._settings)
         known = self.hypotheses

@@ -64,7 +64,8 @@ class LineReport:
 
     leftward : the array moves from right to left. hum_Hz : None without hum. gain (n,) : of each channel beside the
     kernel's, with its polarity; dead : numbers of channels from 1. offset_mm, yaw_deg : of now. lost : how often the
-    track was lost.
+    track was lost. beside : number of cells at which the array was more than reach_mm beside the line, where no segment
+    feels one of its rows of dots.
     """
 
     leftward: bool
@@ -77,6 +78,8 @@ class LineReport:
     offset_mm: float
     yaw_deg: float
     lost: int
+    reach_mm: float
+    beside: int
 
 
 class LineReader:
@@ -99,7 +102,7 @@ class LineReader:
         self._filters: list[LineFilter] = []
         self._channels: Channels | None = None
         self._blanks: list[PassedCell] = []
-        self._given = 0
+        self._beside = 0
         self.course: list[tuple[float, float]] | None = None
 
     def push(self, voltage_V: Floats) -> list[ReadCell]:
@@ -133,8 +136,9 @@ class LineReader:
         hum = float(self._hum[0][FREQUENCY]) * self._rate / (2.0 * np.pi)
         dead = tuple(int(self._used[k]) + 1 for k in np.flatnonzero(~channels.alive))
         return LineReport(
-            best.table.is_mirrored, self._line_begin_s, hum or None, channels.gain * best.sensor.gain, dead,
+            best.table.is_mirrored, self._line_begin_s, hum or None, channels.gain * best.gain, dead,
             channels.resting_V, channels.noise_V, best.offset_mm, best.yaw_deg, best.losses,
+            best.table.reach_mm, self._beside,
         )  # fmt: skip
 
     @property
@@ -210,7 +214,7 @@ class LineReader:
         floor = (FLOOR_SHARE * table.largest_pC) ** 2 + noise**2
         sensor = Sensor(
             table.lone, table.beside, table.within, table.dot_pitch_mm, table.cell_pitch_mm, channels.alive,
-            np.ones(count), floor, drift, bend,
+            floor, drift, bend,
         )  # fmt: skip
         begin = inside if channels.is_inside else at_the_first_column
         start = begin(table, channels.speed_mm_per_s, count)
@@ -269,6 +273,7 @@ class LineReader:
 
     def _read_cell(self, passed: PassedCell) -> ReadCell:
         """The cell as it is given out, in the order of reading."""
+        self._beside += passed.aside_mm > self._filters[0].table.reach_mm
         cell, shares, stated = passed.cell, passed.shares, stated_probability(passed)
         if passed.probability > 1.0 / KINDS_OF_CELL:  # what the stated one is less is any other cell
             left = (stated - 1.0 / KINDS_OF_CELL) / (passed.probability - 1.0 / KINDS_OF_CELL)
