@@ -48,8 +48,8 @@ def track_warnings(track: HandTrack, labels: list[str]) -> list[str]:
         told.append(f"dead channels: {names} gave no signal where others did; the line was read without them")
     if report.beside:
         told.append(
-            f"path: at {report.beside} cells the array was more than {report.reach_mm:.1f} mm beside the line, where no "
-            "segment feels one of its rows of dots; move it along the middle of the line"
+            f"path: at {report.beside} cells the array was more than {report.reach_mm:.1f} mm beside the line, where "
+            "no segment feels one of its rows of dots; move it along the middle of the line"
         )
     turned = report.gain < 0.0
     if turned.all():

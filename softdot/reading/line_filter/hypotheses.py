@@ -61,6 +61,10 @@ FIRST_COLUMN = 0.85
 """Share of lines whose first dots are in the first column of their cell."""
 
 
+Asides = list[tuple[Floats, float]]
+"""Lateral places (9,) and their log-probabilities."""
+
+
 @dataclass
 class Beam:
     """Rows of state (h, 4), choice (h, 5) and memory (h, 33 + 4 n) (hypothesis_arrays)."""
@@ -140,13 +144,13 @@ def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) 
     return Beam(np.array(rows), np.array(chosen, dtype=np.int64), memory)
 
 
-def _lateral_places() -> list[tuple[Floats, float]]:
+def _lateral_places() -> Asides:
     """Lateral places (9,) of an array of which nothing is known, and their log-priors."""
     places = np.arange(-FARTHEST_ASIDE_MM, FARTHEST_ASIDE_MM + 0.01, 2.0 * ASIDE_SPREAD_MM)
     return [seen_at(float(place), ASIDE_SPREAD_MM) for place in places]
 
 
-def _places_beside(aside: Floats, row_mm: float) -> list[tuple[Floats, float]]:
+def _places_beside(aside: Floats, row_mm: float) -> Asides:
     """Lateral places (9,) about one that was followed: it, somewhat beside it, and one row of dots to each side."""
     found = []
     for away in (-row_mm, -2.0 * ASIDE_SPREAD_MM, 0.0, 2.0 * ASIDE_SPREAD_MM, row_mm):
@@ -164,7 +168,7 @@ def _channels(count: int) -> Floats:
 
 
 def _memory(asides: Floats, channels: Floats) -> Floats:
-    """Memories (h, 33 + 4 n) in which nothing is known of any dot, with lateral places (h, 9) and one of the channels (4 n,)."""
+    """Memories (h, 33 + 4 n) that know of no dot, with lateral places (h, 9) and what is known of channels (4 n,)."""
     known = np.empty((len(asides), LEVEL + len(channels)))
     known[:, HEIGHT:SPREAD], known[:, SPREAD:LATERAL] = HEIGHT_MEAN, HEIGHT_SPREAD**2
     known[:, LATERAL:LEVEL], known[:, LEVEL:] = asides, channels
@@ -197,7 +201,7 @@ def _anywhere(
     middle_mm: float,
     known: Ints,
     speeds: Floats,
-    asides: list[tuple[Floats, float]],
+    asides: Asides,
     channels: Floats,
 ) -> Beam:
     """Hypotheses within half a cell of a place, with what a choice (5,) knows of the columns before, and its yaw."""
