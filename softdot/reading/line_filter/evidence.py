@@ -32,8 +32,8 @@ LARGEST_RESIDUAL = 3.0
 """Standard deviations that the drift takes from one residual at most."""
 LEAST_SPREAD = 0.04**2
 """Least variance of a height."""
-GAIN_SPREAD, LEAST_GAIN_SPREAD, WIDEST_GAIN = 0.2**2, 0.03**2, 2.5
-"""Variance of a gain before anything was seen (assumed) and the least one, and largest factor of a gain."""
+WIDEST_GAIN = 2.5
+"""Largest factor of a gain."""
 REAR, FRONT = 1, 2
 """Bits of the columns in the window that a hypothesis meets for the first time."""
 
@@ -87,7 +87,7 @@ def log_evidence(memory, h, at, pattern, found, count, aside, measured, temper, 
     for j in range(channels):
         rest = measured[j] - memory[h, LEVEL + j] - settings.step_s * memory[h, LEVEL + channels + j]
         gain, gain_spread = memory[h, LEVEL + 2 * channels + j], memory[h, LEVEL + 3 * channels + j]
-        gain_spread = min(gain_spread + settings.gain_walk, GAIN_SPREAD)
+        gain_spread = min(gain_spread + settings.gain_walk, settings.gain_spread)
         channel[0, j], channel[1, j], channel[2, j] = rest, gain, gain_spread
         if not sensor.alive[j]:
             continue
@@ -118,7 +118,7 @@ def log_evidence(memory, h, at, pattern, found, count, aside, measured, temper, 
             found[2, k] = max(found[2, k] * (1.0 - own * found[3, k]), LEAST_SPREAD)
         own = per_gain * gain_spread * temper / whole
         channel[1, j] = min(max(gain + own * believed, 1.0 / WIDEST_GAIN), WIDEST_GAIN)
-        channel[2, j] = max(gain_spread * (1.0 - own * per_gain), LEAST_GAIN_SPREAD)
+        channel[2, j] = max(gain_spread * (1.0 - own * per_gain), settings.least_gain_spread)
         see(aside, temper * slope / whole, believed, slope)
     return -0.5 * temper * (np.log(widths) + (settings.degrees + 1.0) * np.log(tails)) - 0.5 * np.log(spreads)
 

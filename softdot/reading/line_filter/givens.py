@@ -30,8 +30,9 @@ class HandMotion(NamedTuple):
     step. log_blank, log_dots (4,) : of a blank column, and of each other pattern, by kind_before. log_unseen :
     of one that passes without contact. height, height_spread : mean and variance of the height of dots, as shares of
     the nominal charge. rough : standard deviation of a charge over the charge; degrees : of Student's t. fade : what
-    is left of a wander across the line. gain_walk : variance by which a gain may change. kept_log, most_kept : how far
-    behind the best, and how many hypotheses are kept.
+    is left of a wander across the line. gain_spread, least_gain_spread, gain_walk : variance of a gain at
+    first, at least, and by which it may change. kept_log, most_kept : how far behind the best, and how many hypotheses
+    are kept.
     """
 
     step_s: float
@@ -55,6 +56,8 @@ class HandMotion(NamedTuple):
     rough: float
     degrees: float
     fade: float
+    gain_spread: float
+    least_gain_spread: float
     gain_walk: float
     kept_log: float
     most_kept: int

@@ -9,7 +9,6 @@ import numpy as np
 
 from foundation.arrays import Floats, Ints
 from softdot.reading.line_filter.beam import RARE_STEPS
-from softdot.reading.line_filter.evidence import GAIN_SPREAD
 from softdot.reading.line_filter.givens import HandMotion
 from softdot.reading.line_filter.hypothesis_arrays import (
     COLUMNS,
@@ -53,8 +52,8 @@ YAW_SPREAD_DEG = 6.0
 """Standard deviation of the turn of the array at the beginning, assumed."""
 FARTHEST_ASIDE_MM, ASIDE_SPREAD_MM = 2.4, 0.2
 """Lateral places with which a line begins, and the standard deviation of each: they are twice as far apart."""
-GAIN_WALK = 0.02
-"""By how much a gain changes in the root of a second, assumed."""
+GAIN_SPREAD, LEAST_GAIN_SPREAD, GAIN_WALK = 0.2, 0.03, 0.02
+"""Standard deviations of a gain at first and at least, and by how much it changes in the root of a second: assumed."""
 ROW_BESIDE = 0.1
 """Share of lost tracks in which the array lay one row of dots farther than was thought, to each side: assumed."""
 FIRST_COLUMN = 0.85
@@ -105,6 +104,8 @@ def settings(step_s: float, is_mirrored: bool) -> HandMotion:
         height_spread=HEIGHT_SPREAD**2,
         rough=ROUGH_SHARE,
         degrees=DEGREES,
+        gain_spread=GAIN_SPREAD**2,
+        least_gain_spread=LEAST_GAIN_SPREAD**2,
         gain_walk=GAIN_WALK**2 * step_s,
         fade=exp(-step_s / WANDER_S),
         kept_log=KEPT_LOG,
@@ -164,7 +165,7 @@ def _places_beside(aside: Floats, row_mm: float) -> Asides:
 
 def _channels(count: int) -> Floats:
     """Level and rate of the drift, gain and its variance (4 n,) of channels of which nothing is known."""
-    return np.concatenate([np.zeros(2 * count), np.ones(count), np.full(count, GAIN_SPREAD)])
+    return np.concatenate([np.zeros(2 * count), np.ones(count), np.full(count, GAIN_SPREAD**2)])
 
 
 def _memory(asides: Floats, channels: Floats) -> Floats:
