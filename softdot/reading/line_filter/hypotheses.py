@@ -52,7 +52,7 @@ YAW_SPREAD_DEG = 6.0
 """Standard deviation of the turn of the array at the beginning, assumed."""
 FARTHEST_ASIDE_MM, ASIDE_SPREAD_MM = 2.4, 0.2
 """Lateral places with which a line begins, and the standard deviation of each: they are twice as far apart."""
-GAIN_SPREAD, LEAST_GAIN_SPREAD, GAIN_WALK = 0.2, 0.03, 0.02
+GAIN_SPREAD, LEAST_GAIN_SPREAD, GAIN_WALK = 0.2, 0.08, 0.02
 """Standard deviations of a gain at first and at least, and by how much it changes in the root of a second: assumed."""
 ROW_BESIDE = 0.1
 """Share of lost tracks in which the array lay one row of dots farther than was thought, to each side: assumed."""

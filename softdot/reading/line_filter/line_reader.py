@@ -25,7 +25,7 @@ LEAST_S, LEAST_WAY_MM, MOST_S = 1.0, 25.0, 10.0
 """What is heard of a line before its channels are measured: a time and a way at least, or a longer time."""
 BLOCK_MM, LONGEST_BLOCK_S = 0.4, 0.05
 """Way and time that charges are averaged over, at most."""
-CORRELATED_MM, LEAST_TEMPER = 0.8, 0.03
+CORRELATED_MM, LEAST_TEMPER = 1.2, 0.03
 """Way over which errors of the kernel are alike, so that it counts as one measurement; least share of one in a step."""
 DIRECTION_EVIDENCE, DIRECTION_COLUMNS = 25.0, 6
 """Logarithm of the evidence that decides the direction, or columns after which the better one is taken."""
