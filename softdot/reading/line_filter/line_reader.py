@@ -33,8 +33,8 @@ DRIFT_SHARE = 7e-4
 """Least standard deviation of the drift in a step, over the largest charge of one dot."""
 SLOPE_V_PER_S, SLOPES = 3e-4, 2.0
 """By how much a resting voltage is taken to change in a second, at least and over what the first seconds say."""
-LOST_PROBABILITY = 0.5
-"""Of a cell at most where the fit was bad."""
+LOST_PROBABILITY, UNFELT_PROBABILITY = 0.5, 0.85
+"""Of a cell at most where the fit was bad, and where no segment felt one of its rows of dots."""
 CERTAIN = 0.9
 """Least probability of a cell that is given out as read."""
 MIRRORED = np.arange(KINDS_OF_CELL) >> 3 | (np.arange(KINDS_OF_CELL) & 7) << 3
@@ -273,8 +273,9 @@ class LineReader:
 
     def _read_cell(self, passed: PassedCell) -> ReadCell:
         """The cell as it is given out, in the order of reading."""
-        self._beside += passed.aside_mm > self._filters[0].table.reach_mm
-        cell, shares, stated = passed.cell, passed.shares, stated_probability(passed)
+        reach = self._filters[0].table.reach_mm
+        self._beside += passed.aside_mm > reach
+        cell, shares, stated = passed.cell, passed.shares, stated_probability(passed, reach)
         if passed.probability > 1.0 / KINDS_OF_CELL:  # what the stated one is less is any other cell
             left = (stated - 1.0 / KINDS_OF_CELL) / (passed.probability - 1.0 / KINDS_OF_CELL)
             shares = max(left, 0.0) * shares + (1.0 - max(left, 0.0)) / KINDS_OF_CELL
@@ -284,11 +285,13 @@ class LineReader:
         return ReadCell(passed.number, int(cell), stated, passed.time_s, shares)
 
 
-def stated_probability(passed: PassedCell) -> float:
-    """The probability that a cell is right: that of the hypotheses, less where the fit was bad."""
+def stated_probability(passed: PassedCell, reach_mm: float) -> float:
+    """The probability that a cell is right: that of the hypotheses, less where the fit was bad or the array was farther
+    beside the line than it reaches.
+    """
     if passed.worst_fit > LOST_FIT:
         return min(passed.probability, LOST_PROBABILITY)
-    return passed.probability
+    return min(passed.probability, UNFELT_PROBABILITY) if passed.aside_mm > reach_mm else passed.probability
 
 
 def _circuit(kernel: ArrayKernel, readout: Readout, used: np.ndarray) -> tuple[Floats, Floats]:
