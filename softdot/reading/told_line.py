@@ -24,6 +24,7 @@ def line_content(track: HandTrack) -> dict[str, Any]:
         "noise_mV": 1e3 * report.noise_V,
         "resting_mV": 1e3 * report.resting_V,
         "lost_track": report.lost,
+        "cells_beside_the_line": report.beside,
         "cells_without_contact": int((track.cells < 0).sum()),
     }
 
@@ -45,6 +46,11 @@ def track_warnings(track: HandTrack, labels: list[str]) -> list[str]:
     if report.dead:
         names = ", ".join(labels[number - 1] for number in report.dead)
         told.append(f"dead channels: {names} gave no signal where others did; the line was read without them")
+    if report.beside:
+        told.append(
+            f"path: at {report.beside} cells the array was more than {report.reach_mm:.1f} mm beside the line, where "
+            "no segment feels one of its rows of dots; move it along the middle of the line"
+        )
     turned = report.gain < 0.0
     if turned.all():
         told.append("polarity: all channels are turned against the kernel; the line was read with the other sign")

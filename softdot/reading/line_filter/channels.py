@@ -24,10 +24,6 @@ CLEAR_POLARITY = 3.0
 """Ratio of the extreme charges of both signs from which a channel shows a polarity of its own."""
 DEAD_LOUDNESS = 2.0
 """Root mean square of voltages over that of their noise below which a channel has no signal."""
-WIDEST_GAIN = 1.5
-"""Largest ratio of the gain of a channel and the common one that is taken from the first seconds."""
-BELIEVED = 0.5
-"""Exponent of that ratio: few dots have passed in the first seconds, and not all in the middle of their row."""
 DRIFTING, ROUNDS = 0.7, 30
 """Share of the charges that a drift must leave to be believed, and rounds in which it is found."""
 SMOOTHED_S = 0.006
@@ -39,8 +35,8 @@ class Channels:
     """The channels (n,) of the first seconds.
 
     resting_V, noise_V; slope_V_per_s : root mean square of that of resting voltages which drift; gain : charge over
-    that of the kernel, with the sign of the polarity; alive. onset : number of the first sample with a signal, which
-    is_inside : a signal was there from the first sample on. speed_mm_per_s : roughly.
+    that of the kernel, of all channels together, with the sign of the polarity of each; alive. onset : number of the
+    first sample with a signal, which is_inside : a signal was there from the first sample on. speed_mm_per_s : roughly.
     """
 
     resting_V: Floats
@@ -119,7 +115,11 @@ def _loudness(voltage_V: Floats, noise_V: Floats, step_s: float) -> Floats:
 
 
 def _gains(charge_pC: Floats, loud: Floats, is_inside: bool, table: LineTable, places: Floats) -> tuple[Floats, Bools]:
-    """Signed gain (n,) of each channel, and which are alive."""
+    """Gain (n,) with the sign of each channel, and which are alive.
+
+    Its size is the same for all: what a channel hears in the first seconds depends on how far the array is beside the
+    line, and the filter finds both together.
+    """
     if is_inside:
         charge_pC = charge_pC - np.median(charge_pC, axis=0)
     high, low = np.quantile(charge_pC, [HIGH, 1.0 - HIGH], axis=0)
@@ -134,11 +134,10 @@ def _gains(charge_pC: Floats, loud: Floats, is_inside: bool, table: LineTable, p
     row = np.where(alike, size, 0.0).max(axis=1)
     alive = size >= DEAD_SHARE * np.maximum(row, SILENT_SHARE * common * (row >= SILENT_SHARE * common))
     silent = row < SILENT_SHARE * common
-    own = common * np.clip(size / max(common, 1e-300), 1.0 / WIDEST_GAIN, WIDEST_GAIN) ** BELIEVED
     together = 1.0 if np.sum(sign * size * ~silent) >= 0.0 else -1.0
     clear = np.maximum(np.abs(high), np.abs(low)) > CLEAR_POLARITY * np.minimum(np.abs(high), np.abs(low))
     sign = np.where(clear & ~silent & alive, sign, together)
-    return sign * np.maximum(np.where(silent, common, own), 1e-12), alive | silent
+    return sign * max(common, 1e-12), alive | silent
 
 
 def _speed(charge_pC: Floats, step_s: float, alive: Bools, table: LineTable) -> float:

@@ -2,36 +2,38 @@
 
 from dataclasses import dataclass
 from itertools import product
-from math import log, sqrt
+from math import exp, log, sqrt
 from typing import Any
 
 import numpy as np
 
 from foundation.arrays import Floats, Ints
-from softdot.reading.line_filter.beam import RARE_STEPS, HandMotion
+from softdot.reading.line_filter.beam import RARE_STEPS
+from softdot.reading.line_filter.givens import HandMotion
 from softdot.reading.line_filter.hypothesis_arrays import (
     COLUMNS,
     FORTH,
     HEIGHT,
     KEPT_COLUMNS,
+    LATERAL,
     LEVEL,
-    OFFSET,
     PLACE,
     SEEN,
     SPREAD,
     UNSEEN,
     YAW,
 )
-from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, LineTable, column_mm
+from softdot.reading.line_filter.lateral import LINE_A, VAR_A, WANDER, WANDER_S, seen_at
+from softdot.reading.line_filter.table import YAWS_DEG, LineTable, column_mm
 
 SPEED_SPREAD_PER_SQRT_S, JUMP, JUMPS_PER_S = 0.5, 0.35, 0.5
 """Random walk of the log-speed, its jumps, and how often each happens."""
 RELAX_S, SETTLE_S = 1.0, 2.0
 """Time in which the log-speed returns to its mean, and the mean follows the log-speed."""
 STOPS_PER_S, GOES_PER_S, BACKS_PER_S, FORTHS_PER_S = 0.3, 1.5, 0.3, 4.0
-ASIDES_PER_S, TURNS_PER_S, LIFTS_PER_S, TOUCHES_PER_S = 2.0, 0.2, 0.2, 6.0
-"""How often a hand stops and goes on, turns back and forth, moves or turns by a step, loses and finds contact: all of
-this is assumed.
+TURNS_PER_S, LIFTS_PER_S, TOUCHES_PER_S = 0.2, 0.2, 6.0
+"""How often a hand stops and goes on, goes back and forth, turns by a step, loses and finds contact: all of this is
+assumed.
 """
 BLANK = 0.3
 """Share of blank columns where nothing is known."""
@@ -46,15 +48,25 @@ SPEED_FACTOR, SPEEDS = 2.2, 7
 """Factor about a rough speed within which speeds are tried, and their number."""
 FARTHEST_SHARE, NEAREST_MM, ENTRY_STEP_MM = 1.4, 0.4, 0.3
 """Distance at which the first column may be seen first: of half the window, and the nearest."""
-OFFSET_SPREAD_MM, YAW_SPREAD_DEG = 0.7, 6.0
-"""Standard deviations of the posture at the beginning, assumed."""
+YAW_SPREAD_DEG = 6.0
+"""Standard deviation of the turn of the array at the beginning, assumed."""
+FARTHEST_ASIDE_MM, ASIDE_SPREAD_MM = 2.4, 0.2
+"""Lateral places with which a line begins, and the standard deviation of each: they are twice as far apart."""
+GAIN_SPREAD, LEAST_GAIN_SPREAD, GAIN_WALK = 0.2, 0.08, 0.02
+"""Standard deviations of a gain at first and at least, and by how much it changes in the root of a second: assumed."""
+ROW_BESIDE = 0.1
+"""Share of lost tracks in which the array lay one row of dots farther than was thought, to each side: assumed."""
 FIRST_COLUMN = 0.85
 """Share of lines whose first dots are in the first column of their cell."""
 
 
+Asides = list[tuple[Floats, float]]
+"""Lateral places (9,) and their log-probabilities."""
+
+
 @dataclass
 class Beam:
-    """Rows of state (h, 4), choice (h, 6) and memory (h, 24 + 2 n), as in softdot.reading.line_filter.beam."""
+    """Rows of state (h, 4), choice (h, 5) and memory (h, 33 + 4 n) (hypothesis_arrays)."""
 
     state: Floats
     choice: Ints
@@ -82,7 +94,6 @@ def settings(step_s: float, is_mirrored: bool) -> HandMotion:
         log_go=often(GOES_PER_S),
         log_back=rarely(BACKS_PER_S),
         log_forth=rarely(FORTHS_PER_S),
-        log_aside=rarely(ASIDES_PER_S),
         log_turn=rarely(TURNS_PER_S),
         log_lift=rarely(LIFTS_PER_S),
         log_touch=often(TOUCHES_PER_S),
@@ -93,6 +104,10 @@ def settings(step_s: float, is_mirrored: bool) -> HandMotion:
         height_spread=HEIGHT_SPREAD**2,
         rough=ROUGH_SHARE,
         degrees=DEGREES,
+        gain_spread=GAIN_SPREAD**2,
+        least_gain_spread=LEAST_GAIN_SPREAD**2,
+        gain_walk=GAIN_WALK**2 * step_s,
+        fade=exp(-step_s / WANDER_S),
         kept_log=KEPT_LOG,
         most_kept=MOST_KEPT,
     )
@@ -110,30 +125,54 @@ def _blank_columns(is_mirrored: bool) -> Floats:
 
 def early_settings(step_s: float, is_mirrored: bool) -> HandMotion:
     """The motion over the first column: what is rare is left out, and more hypotheses are kept."""
-    rare: dict[str, Any] = dict.fromkeys(
-        ("log_jump", "log_stop", "log_back", "log_aside", "log_turn", "log_lift"), -1e9
-    )
+    rare: dict[str, Any] = dict.fromkeys(("log_jump", "log_stop", "log_back", "log_turn", "log_lift"), -1e9)
     return settings(step_s, is_mirrored)._replace(most_kept=EARLY_KEPT, **rare)
 
 
 def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) -> Beam:
     """The array meets the first column of a line: of its cell the first or the second, any pattern but a blank."""
     entries = np.arange(NEAREST_MM, 0.5 * FARTHEST_SHARE * table.cell_pitch_mm, ENTRY_STEP_MM)
-    offsets, yaws = range(1, len(OFFSETS_MM), 2), range(2, len(YAWS_DEG) - 2, 2)
-    rows, chosen = [], []
+    postures = list(product(_lateral_places(), range(2, len(YAWS_DEG) - 2, 2)))
+    rows, chosen, asides = [], [], []
     for column, pattern in product((0, 1), range(1, 8)):
         chance = log((FIRST_COLUMN if column == 0 else 1.0 - FIRST_COLUMN) / 7.0)
-        for entry, speed, offset, yaw in product(entries, _speeds(speed_mm_per_s), offsets, yaws):
-            posture = -0.5 * ((OFFSETS_MM[offset] / OFFSET_SPREAD_MM) ** 2 + (YAWS_DEG[yaw] / YAW_SPREAD_DEG) ** 2)
-            rows.append((column_mm(table, column) - entry, speed, speed, chance + posture))
-            chosen.append((FORTH, offset, yaw, 1, column + 1, pattern))
-    return Beam(np.array(rows), np.array(chosen, dtype=np.int64), _memory(len(rows), np.zeros(2 * channels)))
+        for entry, speed, ((aside, log_aside), yaw) in product(entries, _speeds(speed_mm_per_s), postures):
+            turned = -0.5 * (YAWS_DEG[yaw] / YAW_SPREAD_DEG) ** 2
+            rows.append((column_mm(table, column) - entry, speed, speed, chance + log_aside + turned))
+            chosen.append((FORTH, yaw, 1, column + 1, pattern))
+            asides.append(aside)
+    memory = _memory(np.array(asides), _channels(channels))
+    return Beam(np.array(rows), np.array(chosen, dtype=np.int64), memory)
 
 
-def _memory(count: int, drift: Floats) -> Floats:
-    """Memories (count, 24 + 2 n) in which nothing is known of any dot, with one drift (2 n)."""
-    known = np.empty((count, LEVEL + len(drift)))
-    known[:, HEIGHT:SPREAD], known[:, SPREAD:LEVEL], known[:, LEVEL:] = HEIGHT_MEAN, HEIGHT_SPREAD**2, drift
+def _lateral_places() -> Asides:
+    """Lateral places (9,) of an array of which nothing is known, and their log-priors."""
+    places = np.arange(-FARTHEST_ASIDE_MM, FARTHEST_ASIDE_MM + 0.01, 2.0 * ASIDE_SPREAD_MM)
+    return [seen_at(float(place), ASIDE_SPREAD_MM) for place in places]
+
+
+def _places_beside(aside: Floats, row_mm: float) -> Asides:
+    """Lateral places (9,) about one that was followed: it, somewhat beside it, and one row of dots to each side."""
+    found = []
+    for away in (-row_mm, -2.0 * ASIDE_SPREAD_MM, 0.0, 2.0 * ASIDE_SPREAD_MM, row_mm):
+        own = aside.copy()
+        own[LINE_A] += away
+        own[VAR_A] += ASIDE_SPREAD_MM**2
+        if abs(own[LINE_A] + own[WANDER]) <= FARTHEST_ASIDE_MM or away == 0.0:
+            found.append((own, log(ROW_BESIDE) if abs(away) == row_mm else 0.0))
+    return found
+
+
+def _channels(count: int) -> Floats:
+    """Level and rate of the drift, gain and its variance (4 n,) of channels of which nothing is known."""
+    return np.concatenate([np.zeros(2 * count), np.ones(count), np.full(count, GAIN_SPREAD**2)])
+
+
+def _memory(asides: Floats, channels: Floats) -> Floats:
+    """Memories (h, 33 + 4 n) that know of no dot, with lateral places (h, 9) and what is known of channels (4 n,)."""
+    known = np.empty((len(asides), LEVEL + len(channels)))
+    known[:, HEIGHT:SPREAD], known[:, SPREAD:LATERAL] = HEIGHT_MEAN, HEIGHT_SPREAD**2
+    known[:, LATERAL:LEVEL], known[:, LEVEL:] = asides, channels
     return known
 
 
@@ -141,24 +180,43 @@ def _speeds(speed_mm_per_s: float) -> Floats:
     return np.asarray(np.log(speed_mm_per_s) + log(SPEED_FACTOR) * np.linspace(-1.0, 1.0, SPEEDS))
 
 
-def anywhere(table: LineTable, best: Beam, speeds: Floats) -> Beam:
+def inside(table: LineTable, speed_mm_per_s: float, channels: int) -> Beam:
+    """The array is on a line already when it begins to be heard: in the first cell, with any two columns."""
+    yaw = len(YAWS_DEG) // 2
+    nowhere = np.array([FORTH, yaw, 1, 0, 0])
+    speeds = np.log(speed_mm_per_s) + np.linspace(-1.0, 1.0, 9)
+    return _anywhere(table, 0.5 * table.cell_pitch_mm, nowhere, speeds, _lateral_places(), _channels(channels))
+
+
+def around(table: LineTable, best: Beam, speeds: Floats) -> Beam:
     """Around the place of one hypothesis, within half a cell to each side: any two columns, near postures and speeds.
 
-    speeds (s,) : logarithms. Of the one hypothesis place, posture and drift are taken.
+    speeds (s,) : logarithms. Of the one hypothesis place, posture, drift and gains are taken.
     """
+    asides = _places_beside(best.memory[0, LATERAL:LEVEL], table.dot_pitch_mm)
+    return _anywhere(table, float(best.state[0, PLACE]), best.choice[0], speeds, asides, best.memory[0, LEVEL:])
+
+
+def _anywhere(
+    table: LineTable,
+    middle_mm: float,
+    known: Ints,
+    speeds: Floats,
+    asides: Asides,
+    channels: Floats,
+) -> Beam:
+    """Hypotheses within half a cell of a place, with what a choice (5,) knows of the columns before, and its yaw."""
     pitch = table.cell_pitch_mm
-    places = best.state[0, PLACE] + np.arange(-0.5 * pitch, 0.5 * pitch, 0.15)
-    offset, yaw = int(best.choice[0, OFFSET]), int(best.choice[0, YAW])
-    offsets = sorted({min(max(offset + k, 0), len(OFFSETS_MM) - 1) for k in (-2, 0, 2)})
-    rows, chosen = [], []
-    for place in places:
-        columns, seen = _with_unseen(best.choice[0], _last_in_window(table, place))
-        for speed, aside, pattern in product(speeds, offsets, range(64)):
-            rows.append((place, speed, speed, _chance_of(pattern)))
+    rows, chosen, own_asides = [], [], []
+    for place in middle_mm + np.arange(-0.5 * pitch, 0.5 * pitch, 0.15):
+        columns, seen = _with_unseen(known, _last_in_window(table, place))
+        for speed, (aside, log_aside), pattern in product(speeds, asides, range(64)):
+            rows.append((place, speed, speed, log_aside + _chance_of(pattern)))
             own = columns & ~0xFF | pattern >> 3 | (pattern & 7) << 4
-            chosen.append((FORTH, aside, yaw, 1, seen, own))
-    state, choice = np.array(rows), np.array(chosen, dtype=np.int64)
-    return Beam(state, choice, _memory(len(rows), best.memory[0, LEVEL:]))
+            chosen.append((FORTH, known[YAW], 1, seen, own))
+            own_asides.append(aside)
+    memory = _memory(np.array(own_asides), channels)
+    return Beam(np.array(rows), np.array(chosen, dtype=np.int64), memory)
 
 
 def _chance_of(pattern: int) -> float:

@@ -7,17 +7,19 @@ import numpy as np
 
 from foundation.arrays import Floats
 from softdot.reading.cells import DOTS
-from softdot.reading.line_filter.beam import MOST_CHILDREN, RARE_STEPS, Sensor, advance, predicted_charges, weighed
-from softdot.reading.line_filter.hypotheses import Beam, anywhere, early_settings, settings
+from softdot.reading.line_filter.beam import MOST_CHILDREN, RARE_STEPS, advance, weighed
+from softdot.reading.line_filter.evidence import predicted_charges
+from softdot.reading.line_filter.givens import Sensor
+from softdot.reading.line_filter.hypotheses import Beam, around, early_settings, settings
 from softdot.reading.line_filter.hypothesis_arrays import (
     COLUMNS,
     HEIGHT,
     KEPT_COLUMNS,
     KEPT_HEIGHTS,
+    LATERAL,
     LEVEL,
     LOG_SPEED,
     LOG_WEIGHT,
-    OFFSET,
     PLACE,
     ROWS,
     SEEN,
@@ -28,7 +30,8 @@ from softdot.reading.line_filter.hypothesis_arrays import (
     WAY,
     YAW,
 )
-from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, LineTable
+from softdot.reading.line_filter.lateral import LINE_A, WANDER
+from softdot.reading.line_filter.table import YAWS_DEG, LineTable
 
 LAG_COLUMNS, FIRST_COLUMNS = 4, 12
 """Columns that must follow a cell before it is given out, and least number of all: posture and heights come first."""
@@ -42,16 +45,12 @@ LOST_FIT, FOUND_FIT = 4.0, 2.0
 """Mean squared residuals in their variance above which a track is lost, and below which it is found again."""
 PATIENCE_S = 0.6
 """Time that a new start has before the next one."""
-GAIN_S, GAIN_PRIOR_S, WIDEST_GAIN = 8.0, 2.0, 2.0
-"""Memory of the gains that are followed, weight of the first ones, and how far they may go from these."""
 EARLY_SHARE, EARLY_STEPS = 0.6, 40
 """More hypotheses are kept until a charge reaches this share of the largest one of a dot, for so many steps at most."""
 HEIGHTS_PRIOR, HEIGHTS_MEMORY, KNOWN_SPREAD, HEIGHT_SPREADS = 10.0, 60.0, 0.03, (0.1**2, 0.4**2)
 """Of the heights of a line's dots: weight of what was assumed and memory, both in dots, largest variance of one that
 counts, and least and largest variance of all.
 """
-BETWEEN_ROWS = 0.45
-"""Offset over the pitch of rows from which the array is between them."""
 NEAR_MM = 3.0
 """Way from the middle of a cell within which the fit counts for it."""
 
@@ -59,8 +58,8 @@ NEAR_MM = 3.0
 @dataclass(frozen=True)
 class PassedCell:
     """A cell as the hypotheses have it: number, the most likely one (-1 where none was seen), its probability, time
-    at which the array's middle passed it, the worst fit meanwhile, and whether the array was half a row aside, where
-    every dot lies between two rows of segments and each side looks like the other. shares (64,) : probability of each.
+    at which the array's middle passed it, the worst fit meanwhile, and the largest distance of the array's middle from
+    the middle row meanwhile. shares (64,) : probability of each.
     """
 
     number: int
@@ -68,7 +67,7 @@ class PassedCell:
     probability: float
     time_s: float
     worst_fit: float
-    is_between_rows: bool
+    aside_mm: float
     shares: Floats
 
 
@@ -90,29 +89,24 @@ class LineFilter:
     _now_s: float = 0.0
     _patience_s: float = 0.0
     _times: deque[float] = field(default_factory=deque)
-    _safe_drift: Floats | None = None
     _safe_log_speed: float = 0.0
     _fits: dict[int, float] = field(default_factory=dict)
     _asides: dict[int, float] = field(default_factory=dict)
-    _products: Floats | None = None
 
     def __post_init__(self) -> None:
-        """Make room for children and products."""
-        channels = self.table.lone.shape[-1]
+        """Make room for children."""
         self._settings = settings(self.step_s, self.table.is_mirrored)
         self._early = early_settings(self.step_s, self.table.is_mirrored)
         self._steps, self._is_early = 0, True
         self._room = (
-            np.empty((MOST_CHILDREN, 4)), np.empty((MOST_CHILDREN, 6), dtype=np.int64),
+            np.empty((MOST_CHILDREN, 4)), np.empty((MOST_CHILDREN, 5), dtype=np.int64),
             np.empty(MOST_CHILDREN, dtype=np.int64), np.empty(MOST_CHILDREN, dtype=np.int64),
         )  # fmt: skip
-        prior = GAIN_PRIOR_S / self.step_s * (0.3 * self.table.largest_pC) ** 2
-        self._products = np.full((2, channels), prior)
         self._best = 0
         first, second = self._settings.height, self._settings.height_spread + self._settings.height**2
         self._prior_heights = HEIGHTS_PRIOR * np.array([1.0, first, second])
         self._heights = self._prior_heights.copy()
-        self._safe_drift = self.hypotheses.memory[0, LEVEL:]
+        self._safe_channels = self.hypotheses.memory[0, LEVEL:]
         self._safe_log_speed = float(self.hypotheses.state[:, LOG_SPEED].mean())
 
     @property
@@ -140,7 +134,8 @@ class LineFilter:
     @property
     def offset_mm(self) -> float:
         """Distance of the array's middle from the middle row."""
-        return float(OFFSETS_MM[self.hypotheses.choice[self._best, OFFSET]])
+        memory = self.hypotheses.memory[self._best]
+        return float(memory[LATERAL + LINE_A] + memory[LATERAL + WANDER])
 
     @property
     def yaw_deg(self) -> float:
@@ -159,7 +154,7 @@ class LineFilter:
         largest = np.abs(charge_pC - self._level(known.memory[self._best])).max()
         state, choice, memory, evidence = advance(
             known.state, known.choice, known.memory, charge_pC, temper,
-            bool(largest > TOUCH_SHARE * self.table.largest_pC), self._steps % RARE_STEPS, self.sensor,
+            bool(largest > TOUCH_SHARE * self.table.largest_pC), self._steps % RARE_STEPS, self._open_bits, self.sensor,
             self._early if self._is_early else self._settings, self._room,
         )  # fmt: skip
         self._steps += 1
@@ -172,6 +167,18 @@ class LineFilter:
         self._learn(charge_pC)
         self._note_time(time_s)
         self._look_for_the_track(charge_pC)
+
+    @property
+    def _open_bits(self) -> int:
+        """Mask of the columns that are not given out yet, and of those in the window."""
+        count = min(max(self.columns_seen - 2 * self.emitted, LAG_COLUMNS), KEPT_COLUMNS - 1)
+        return (1 << 4 * count) - 1
+
+    @property
+    def gain(self) -> Floats:
+        """Gain (n,) of each channel of the most likely hypothesis over that of the first seconds."""
+        count = self.table.lone.shape[-1]
+        return self.hypotheses.memory[self._best, LEVEL + 2 * count : LEVEL + 3 * count]
 
     def _level(self, memory: Floats) -> Floats:
         """The drift (n,) of each channel in a memory."""
@@ -194,27 +201,17 @@ class LineFilter:
         self._settings = self._settings._replace(height=float(first / count), height_spread=spread)
 
     def _learn(self, charge_pC: Floats) -> None:
-        """Follow fit and gains by the best hypothesis."""
-        predicted = predicted_charges(self.best.state, self.best.choice, self.best.memory, self.sensor)
-        heard = charge_pC - self._level(self.hypotheses.memory[self._best])
-        alive, gain = self.sensor.alive, self.sensor.gain
-        residual = heard - gain * predicted
+        """Follow the fit of the best hypothesis, and keep drift, gains and speed of where it is good."""
+        known, alive = self.best, self.sensor.alive
+        predicted = predicted_charges(known.state, known.choice, known.memory, self.sensor)
+        residual = charge_pC - self._level(known.memory[0]) - predicted
         variance = self.sensor.floor_pC2 + (self._settings.rough * predicted) ** 2
         share = min(self.step_s / FIT_S, 1.0)
         square = float(np.mean(np.minimum(residual[alive] ** 2 / variance[alive], 50.0)))
         self.fit += share * (square - self.fit)
         if self.fit < FOUND_FIT and self.speed_mm_per_s != 0.0 and self.touching:
-            assert self._products is not None
-            assert self._safe_drift is not None
-            known = self.best
-            self._safe_drift = self._safe_drift + share * (known.memory[0, LEVEL:] - self._safe_drift)
+            self._safe_channels = self._safe_channels + share * (known.memory[0, LEVEL:] - self._safe_channels)
             self._safe_log_speed += share * (float(known.state[0, LOG_SPEED]) - self._safe_log_speed)
-            fade = 1.0 - self.step_s / GAIN_S
-            fair = np.abs(residual) < 4.0 * np.sqrt(variance)
-            self._products = fade * self._products + fair * np.stack([predicted * heard, predicted**2])
-            prior = (1.0 - fade) * GAIN_PRIOR_S / self.step_s * (0.3 * self.table.largest_pC) ** 2
-            self._products += prior
-            gain[:] = np.clip(self._products[0] / self._products[1], 1.0 / WIDEST_GAIN, WIDEST_GAIN)
 
     def _note_time(self, time_s: float) -> None:
         """Note the time at which the best hypothesis first passes a cell, and the fit around it."""
@@ -238,9 +235,10 @@ class LineFilter:
             return
         self.is_lost, self._patience_s = True, PATIENCE_S
         self.losses += 1
-        assert self._safe_drift is not None
-        best = replace(self.best, memory=np.concatenate([self.best.memory[:, :LEVEL], self._safe_drift[None]], axis=1))
-        fresh = anywhere(self.table, best, self._safe_log_speed + np.linspace(-1.0, 1.0, 7))
+        best = replace(
+            self.best, memory=np.concatenate([self.best.memory[:, :LEVEL], self._safe_channels[None]], axis=1)
+        )
+        fresh = around(self.table, best, self._safe_log_speed + np.linspace(-1.0, 1.0, 7))
         state, choice, memory = weighed(fresh.state, fresh.choice, fresh.memory, charge_pC, self.sensor, self._settings)
         known = self.hypotheses
         state[:, LOG_WEIGHT] += known.state[self._best, LOG_WEIGHT] - state[:, LOG_WEIGHT].max()
@@ -272,12 +270,12 @@ class LineFilter:
         share = np.bincount(np.where(known, (first & 7) | (second & 7) << 3, 64), weight, 1 << DOTS | 1)
         cell = int(np.argmax(share[:64]))
         fit = self._fits.pop(number, self.fit)
-        between = self._asides.pop(number, 0.0) > BETWEEN_ROWS * self.table.dot_pitch_mm
+        aside = self._asides.pop(number, 0.0)
         time = self._times.popleft() if self._times else self._now_s
         if share[64] >= 0.5:
-            return PassedCell(number, -1, 0.0, time, fit, between, np.full(64, 1.0 / 64.0))
+            return PassedCell(number, -1, 0.0, time, fit, aside, np.full(64, 1.0 / 64.0))
         shares = share[:64] + share[64] / 64.0
-        return PassedCell(number, cell, float(share[cell]), time, fit, between, shares)
+        return PassedCell(number, cell, float(share[cell]), time, fit, aside, shares)
 
 
 def _column(columns: np.ndarray, seen: np.ndarray, number: int) -> np.ndarray:

@@ -9,14 +9,13 @@ from foundation.errors import InputError
 from geometry.braille_standards import BrailleStandard
 from softdot.arrays.kernel import ArrayKernel
 from softdot.reading.cells import KINDS_OF_CELL
-from softdot.reading.line_filter.beam import Sensor
 from softdot.reading.line_filter.channels import Channels, first_signal, measured_channels
 from softdot.reading.line_filter.charge import ChargeBlocks
-from softdot.reading.line_filter.hypotheses import Beam, anywhere, at_the_first_column
-from softdot.reading.line_filter.hypothesis_arrays import LEVEL
+from softdot.reading.line_filter.givens import Sensor
+from softdot.reading.line_filter.hypotheses import at_the_first_column, inside
 from softdot.reading.line_filter.line_filter import FLOOR_SHARE, LOST_FIT, LineFilter, PassedCell
 from softdot.reading.line_filter.mains import BANDWIDTH_HZ, FREQUENCY, hum_frequency_Hz, hum_state, without_hum
-from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, LineTable, line_table
+from softdot.reading.line_filter.table import LineTable, line_table
 from solve.model import Readout
 from solve.readout.amplifier import input_of
 
@@ -26,7 +25,7 @@ LEAST_S, LEAST_WAY_MM, MOST_S = 1.0, 25.0, 10.0
 """What is heard of a line before its channels are measured: a time and a way at least, or a longer time."""
 BLOCK_MM, LONGEST_BLOCK_S = 0.4, 0.05
 """Way and time that charges are averaged over, at most."""
-CORRELATED_MM, LEAST_TEMPER = 0.8, 0.03
+CORRELATED_MM, LEAST_TEMPER = 1.2, 0.03
 """Way over which errors of the kernel are alike, so that it counts as one measurement; least share of one in a step."""
 DIRECTION_EVIDENCE, DIRECTION_COLUMNS = 25.0, 6
 """Logarithm of the evidence that decides the direction, or columns after which the better one is taken."""
@@ -34,8 +33,8 @@ DRIFT_SHARE = 7e-4
 """Least standard deviation of the drift in a step, over the largest charge of one dot."""
 SLOPE_V_PER_S, SLOPES = 3e-4, 2.0
 """By how much a resting voltage is taken to change in a second, at least and over what the first seconds say."""
-LOST_PROBABILITY, ASIDE_PROBABILITY = 0.5, 0.85
-"""Of a cell at most where the fit was bad, and where the array was between two rows of dots."""
+LOST_PROBABILITY, UNFELT_PROBABILITY = 0.5, 0.85
+"""Of a cell at most where the fit was bad, and where no segment felt one of its rows of dots."""
 CERTAIN = 0.9
 """Least probability of a cell that is given out as read."""
 MIRRORED = np.arange(KINDS_OF_CELL) >> 3 | (np.arange(KINDS_OF_CELL) & 7) << 3
@@ -65,7 +64,8 @@ class LineReport:
 
     leftward : the array moves from right to left. hum_Hz : None without hum. gain (n,) : of each channel beside the
     kernel's, with its polarity; dead : numbers of channels from 1. offset_mm, yaw_deg : of now. lost : how often the
-    track was lost.
+    track was lost. beside : number of cells at which the array was more than reach_mm beside the line, where no segment
+    feels one of its rows of dots.
     """
 
     leftward: bool
@@ -78,6 +78,8 @@ class LineReport:
     offset_mm: float
     yaw_deg: float
     lost: int
+    reach_mm: float
+    beside: int
 
 
 class LineReader:
@@ -100,7 +102,7 @@ class LineReader:
         self._filters: list[LineFilter] = []
         self._channels: Channels | None = None
         self._blanks: list[PassedCell] = []
-        self._given = 0
+        self._beside = 0
         self.course: list[tuple[float, float]] | None = None
 
     def push(self, voltage_V: Floats) -> list[ReadCell]:
@@ -134,8 +136,9 @@ class LineReader:
         hum = float(self._hum[0][FREQUENCY]) * self._rate / (2.0 * np.pi)
         dead = tuple(int(self._used[k]) + 1 for k in np.flatnonzero(~channels.alive))
         return LineReport(
-            best.table.is_mirrored, self._line_begin_s, hum or None, channels.gain * best.sensor.gain, dead,
+            best.table.is_mirrored, self._line_begin_s, hum or None, channels.gain * best.gain, dead,
             channels.resting_V, channels.noise_V, best.offset_mm, best.yaw_deg, best.losses,
+            best.table.reach_mm, self._beside,
         )  # fmt: skip
 
     @property
@@ -211,16 +214,10 @@ class LineReader:
         floor = (FLOOR_SHARE * table.largest_pC) ** 2 + noise**2
         sensor = Sensor(
             table.lone, table.beside, table.within, table.dot_pitch_mm, table.cell_pitch_mm, channels.alive,
-            np.ones(count), floor, drift, bend,
+            floor, drift, bend,
         )  # fmt: skip
-        if channels.is_inside:
-            middle = Beam(
-                np.array([[0.5 * table.cell_pitch_mm, 0.0, 0.0, 0.0]]),
-                np.array([[1, len(OFFSETS_MM) // 2, len(YAWS_DEG) // 2, 1, 0, 0]]), np.zeros((1, LEVEL + 2 * count)),
-            )  # fmt: skip
-            start = anywhere(table, middle, np.log(channels.speed_mm_per_s) + np.linspace(-1.0, 1.0, 9))
-        else:
-            start = at_the_first_column(table, channels.speed_mm_per_s, count)
+        begin = inside if channels.is_inside else at_the_first_column
+        start = begin(table, channels.speed_mm_per_s, count)
         return LineFilter(table, sensor, step_s, start)
 
     def _read_on(self, at_end: bool) -> list[ReadCell]:
@@ -276,7 +273,9 @@ class LineReader:
 
     def _read_cell(self, passed: PassedCell) -> ReadCell:
         """The cell as it is given out, in the order of reading."""
-        cell, shares, stated = passed.cell, passed.shares, stated_probability(passed)
+        reach = self._filters[0].table.reach_mm
+        self._beside += passed.aside_mm > reach
+        cell, shares, stated = passed.cell, passed.shares, stated_probability(passed, reach)
         if passed.probability > 1.0 / KINDS_OF_CELL:  # what the stated one is less is any other cell
             left = (stated - 1.0 / KINDS_OF_CELL) / (passed.probability - 1.0 / KINDS_OF_CELL)
             shares = max(left, 0.0) * shares + (1.0 - max(left, 0.0)) / KINDS_OF_CELL
@@ -286,11 +285,13 @@ class LineReader:
         return ReadCell(passed.number, int(cell), stated, passed.time_s, shares)
 
 
-def stated_probability(passed: PassedCell) -> float:
-    """The probability that a cell is right: that of the hypotheses, less where the fit was bad or the array aside."""
+def stated_probability(passed: PassedCell, reach_mm: float) -> float:
+    """The probability that a cell is right: that of the hypotheses, less where the fit was bad or the array was farther
+    beside the line than it reaches.
+    """
     if passed.worst_fit > LOST_FIT:
         return min(passed.probability, LOST_PROBABILITY)
-    return min(passed.probability, ASIDE_PROBABILITY) if passed.is_between_rows else passed.probability
+    return min(passed.probability, UNFELT_PROBABILITY) if passed.aside_mm > reach_mm else passed.probability
 
 
 def _circuit(kernel: ArrayKernel, readout: Readout, used: np.ndarray) -> tuple[Floats, Floats]:

@@ -7,22 +7,25 @@ from softdot.reading.line_filter.hypothesis_arrays import (
     COLUMNS,
     LOG_SPEED,
     LOG_WEIGHT,
-    OFFSET,
     PLACE,
     SEEN,
     TOUCH,
     WAY,
     YAW,
 )
+from softdot.reading.line_filter.lateral import lateral_place
 from solve.compiled import piece
 
-PLACE_BIN_MM, SPEED_BIN = 0.12, 0.18
-"""Within these two hypotheses are merged."""
+PLACE_BIN_MM, SPEED_BIN, ASIDE_BIN_MM = 0.12, 0.18, 0.3
+"""Within these, along the line, of the log-speed and across the line, two hypotheses are merged."""
 
 
 @nb.njit(cache=True)
-def merged(made, made_choice, count, top):  # type: ignore[no-untyped-def]
-    """Numbers of the children that stand for all that agree: the likeliest, with the weighed mean of the motions."""
+def merged(made, made_choice, memory, parent, count, top, open_bits):  # type: ignore[no-untyped-def]
+    """Numbers of the children that stand for all that agree: the likeliest, with the weighed mean of the motions.
+
+    open_bits : mask of the columns in which they must agree, those that are not given out yet.
+    """
     size = 64
     while size < 2 * count:
         size *= 2
@@ -31,7 +34,7 @@ def merged(made, made_choice, count, top):  # type: ignore[no-untyped-def]
     total, most = np.zeros((count, 4)), np.empty(count)
     number = 0
     for child in range(count):
-        key = _key(made[child], made_choice[child])
+        key = _key(made[child], made_choice[child], lateral_place(memory, parent[child]), open_bits)
         slot = key & (size - 1)
         while slots[slot] >= 0 and keys[slots[slot]] != key:
             slot = (slot + 1) & (size - 1)
@@ -53,12 +56,12 @@ def merged(made, made_choice, count, top):  # type: ignore[no-untyped-def]
 
 
 @piece()
-def _key(state, choice):  # type: ignore[no-untyped-def]
+def _key(state, choice, aside, open_bits):  # type: ignore[no-untyped-def]
     """A number that hypotheses share which agree in all that decides how they go on."""
     key = np.int64(np.floor(state[PLACE] / PLACE_BIN_MM))
     for part in (
-        np.int64(np.floor(state[LOG_SPEED] / SPEED_BIN)), choice[WAY], choice[OFFSET], choice[YAW], choice[TOUCH],
-        choice[SEEN], choice[COLUMNS] & 0xFFFF,
+        np.int64(np.floor(state[LOG_SPEED] / SPEED_BIN)), np.int64(np.floor(aside / ASIDE_BIN_MM)),
+        choice[WAY], choice[YAW], choice[TOUCH], choice[SEEN], choice[COLUMNS] & open_bits,
     ):  # fmt: skip
         key = (key ^ (key >> 29)) * np.int64(0x3F58476D1CE4E5B9) + part + np.int64(0x1E3779B97F4A7C15)
     return key ^ (key >> 31)

@@ -19,11 +19,13 @@ from softdot.reading.line import cell_pitch_mm, dot_places_mm
 
 PLACES, COARSER = 120, 3
 """Places of the array within a cell pitch, and of how many one is pressed with several dots at once."""
-OFFSETS_MM = np.round(np.arange(-1.4, 1.41, 0.2), 3)
-"""Distances of the array's middle from the middle row."""
+OFFSETS_MM = np.round(np.arange(-2.8, 2.81, 0.2), 3)
+"""Distances of the array's middle from the middle row, to where its rows see the next rows of dots."""
 YAWS_DEG = np.arange(-20.0, 20.1, 5.0)
 """Turns of the array against the line."""
 ROWS = DOTS // 2
+FAINT_SHARE = 0.15
+"""Of the largest charge of one dot, below which a dot is not told from what is not known of the sensor."""
 HIGH = 0.98
 """Quantile of charges that stands for a large one."""
 
@@ -51,6 +53,16 @@ class LineTable:
     slope_pC_per_mm: float
     spread_pC: float
     high_pC: Floats
+
+    @property
+    def reach_mm(self) -> float:
+        """Distance of the array's middle from the middle row up to which each row of dots is felt by some segment."""
+        middle = len(OFFSETS_MM) // 2
+        largest = np.abs(self.lone[len(YAWS_DEG) // 2, :, :, :ROWS]).max(axis=(0, 3)).min(axis=1)
+        felt = largest >= FAINT_SHARE * self.largest_pC
+        right = int(np.argmin(np.append(felt[middle:], False)))
+        left = int(np.argmin(np.append(felt[middle::-1], False)))
+        return max(min(left, right) - 1, 0) * float(OFFSETS_MM[1] - OFFSETS_MM[0])
 
     @property
     def step_mm(self) -> float:

@@ -1,0 +1,89 @@
+"""The lateral place of an array: a straight line and a wander, by Kalman's equations, and what is told of its reach."""
+
+import numba as nb
+import numpy as np
+import pytest
+
+from geometry.braille_standards import standard
+from softdot.reading.cells import cells_of
+from softdot.reading.decoders.hand import track_hand
+from softdot.reading.line_filter.hypothesis_arrays import LATERAL
+from softdot.reading.line_filter.lateral import LINE_MM, SLOPE, WANDER_MM, move_aside, place_spread, see, seen_at
+from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, line_table
+from softdot.reading.told_line import track_warnings
+from tests.softdot.reading.lines import simulated
+
+OF_PLACE = np.array([1.0, 0.0, 1.0])
+
+
+@nb.njit
+def moved_and_seen(aside, way, fade, noise, slope, charge):
+    """Means and covariances (9,) after a way, and after a charge with a noise that changes by slope over the place."""
+    memory, found = np.zeros((1, LATERAL + 9)), np.empty(9)
+    memory[0, LATERAL:] = aside
+    move_aside(memory, 0, way, fade, found)
+    before = found.copy()
+    residual = charge - slope * (found[0] + found[2])
+    see(found, slope / (noise + slope * slope * place_spread(found)), residual, slope)
+    return before, found
+
+
+def matrix(aside):
+    """Mean (3,) and covariance (3, 3)."""
+    whole = np.zeros((3, 3))
+    whole[np.triu_indices(3)] = aside[3:]
+    return aside[:3], whole + whole.T - np.diag(np.diag(whole))
+
+
+def test_a_place_that_was_seen_is_that_of_the_prior_given_it():
+    """By Gauss's conditional distribution: the limit of an exact look is the prior's regression on the place."""
+    mean, spread = matrix(seen_at(1.2, 0.2)[0])
+    assert OF_PLACE @ mean == pytest.approx(1.2)
+    assert OF_PLACE @ spread @ OF_PLACE == pytest.approx(0.2**2)
+    assert mean[2] / mean[0] == pytest.approx(WANDER_MM**2 / LINE_MM**2)
+    assert spread[1, 1] == pytest.approx(SLOPE**2)
+
+
+def test_it_moves_and_learns_by_the_equations_of_kalman():
+    mean, spread = matrix(start := seen_at(-0.8, 0.3)[0])
+    way, fade, noise, slope, charge = 1.7, 0.9, 9.0, 40.0, -20.0
+    step = np.array([[1.0, way, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, fade]])
+    before, after = moved_and_seen(start, way, fade, noise, slope, charge)
+    mean, spread = step @ mean, step @ spread @ step.T + np.diag([0.0, 0.0, (1.0 - fade**2) * WANDER_MM**2])
+    for known, expected in zip(matrix(before), (mean, spread), strict=True):
+        np.testing.assert_allclose(known, expected, atol=1e-12)
+    row = slope * OF_PLACE
+    gain = spread @ row / (row @ spread @ row + noise)
+    expected = mean + gain * (charge - row @ mean), spread - np.outer(gain, row @ spread)
+    for known, one in zip(matrix(after), expected, strict=True):
+        np.testing.assert_allclose(known, one, atol=1e-12)
+
+
+def test_the_reach_is_where_a_row_is_not_felt_any_more(kernel):
+    """By the kernel itself: the largest charge of a dot of the weakest row, at both sides of the reach."""
+    table = line_table(kernel, standard("marburg-medium"), is_mirrored=False)
+    step = OFFSETS_MM[1] - OFFSETS_MM[0]
+    place, depth = np.linspace(-3.0, 3.0, 61), 0.75 * kernel.depth_mm[-1]
+
+    def weakest(aside):
+        rows = [kernel.of_one(place, np.full(61, row - aside), np.full(61, depth))[0] for row in (-2.5, 0.0, 2.5)]
+        return min(float(one.max()) for one in rows) / table.largest_pC
+
+    assert 0.0 < table.reach_mm < OFFSETS_MM[-1]
+    assert weakest(table.reach_mm) > 0.14
+    assert min(weakest(table.reach_mm + step), weakest(-table.reach_mm - step)) < 0.16
+    assert len(YAWS_DEG) == table.lone.shape[0]
+
+
+@pytest.mark.press
+def test_cells_beside_the_line_are_told_and_not_certain(kernel):
+    """A path that begins and ends where the array does not feel all rows: what is certain is right."""
+    true = cells_of("read by touch")
+    track = track_hand(*simulated(kernel, true, speed_mm_per_s=50.0, seed=3, skew_deg=-2.0))
+    assert len(track.cells) == len(true)
+    certain = track.probability >= 0.9
+    np.testing.assert_array_equal(track.cells[certain], true[certain])
+    assert certain.sum() >= 7
+    assert not certain[[0, -1]].any()
+    assert track.report.beside >= 2
+    assert any("beside the line" in told for told in track_warnings(track, kernel.about["labels"]))
