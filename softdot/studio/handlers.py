@@ -12,16 +12,17 @@ from tornado.web import Application, HTTPError, RequestHandler, stream_request_b
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from foundation.errors import InputError
+from softdot.studio.frames import packed
 from softdot.studio.guard import HEADERS, PAPER_POLICY
 from softdot.studio.session import Session
 from softdot.studio.tabs import Tabs
 from softdot.studio.uploads import LARGEST_MB, split, unpack
 
 PAGE = files("softdot.studio").joinpath("page")
-VIEWER = files("export")
 TEXTS = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}
 KINDS = {ending: f"{kind}; charset=utf-8" for ending, kind in TEXTS.items()} | {".png": "image/png"}
-ASSETS = dict.fromkeys(("studio.css", "icon.svg"), PAGE) | {"webgl.js": VIEWER, "viewer.js": VIEWER}
+FOLDERS = PAGE, PAGE.joinpath("scripts"), PAGE.joinpath("vendor")
+ASSETS = {one.name: one for folder in FOLDERS for one in folder.iterdir() if one.name.endswith((".css", ".js", ".svg"))}
 LARGEST_MESSAGE = 1 << 20
 
 
@@ -82,11 +83,10 @@ class AssetHandler(Guarded):
 
     def get(self, name: str) -> None:
         """One of those that are known."""
-        place = ASSETS.get(name, PAGE.joinpath("scripts") if name.endswith(".js") else None)
-        known = {one.name for one in place.iterdir()} if place is not None else set()
-        if place is None or name not in known:
+        place = ASSETS.get(name)
+        if place is None:
             raise HTTPError(404)
-        self.send_file(place.joinpath(name).read_bytes(), name)
+        self.send_file(place.read_bytes(), name)
 
 
 class FileHandler(Guarded):
@@ -176,7 +176,8 @@ class SocketHandler(Guarded, WebSocketHandler):
 
     def _send(self, message: dict[str, Any]) -> None:
         with suppress(WebSocketClosedError):
-            self.write_message(json.dumps(message))
+            content = packed(message)
+            self.write_message(content, binary=isinstance(content, bytes))
 
 
 def application(tabs: Tabs) -> Application:
@@ -187,7 +188,7 @@ def application(tabs: Tabs) -> Application:
             ("/", PageHandler, shared),
             ("/socket", SocketHandler, shared),
             ("/upload", UploadHandler, shared),
-            (r"/assets/([\w-]+\.\w+)", AssetHandler, shared),
+            (r"/assets/([\w.-]+)", AssetHandler, shared),
             (r"/files/([\w-]+/[\w.-]+)", FileHandler, shared),
         ],
         default_handler_class=MissingHandler,

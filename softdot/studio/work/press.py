@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from export.viewer_data import viewer_data
+from export.solid_view import press_view
 from foundation.errors import InputError
 from foundation.worker_process import Tell
 from mesh.types import MeshingError
@@ -75,7 +75,7 @@ def _pressed_with_progress(press: PreparedPress, progress: "TaskProgress") -> Pr
 def _view(pressed: Pressed) -> dict[str, Any] | None:
     """For the page; None where no step converged."""
     result = pressed.result
-    return viewer_data(result.tet_mesh, result, pressed.case.dot) if len(result.steps) > 1 else None
+    return press_view(result.tet_mesh, result, pressed.case.dot) if len(result.steps) > 1 else None
 
 
 def _pressed(case: Case, progress: "TaskProgress", quality: str) -> dict[str, Any]:

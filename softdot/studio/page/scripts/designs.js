@@ -1,0 +1,152 @@
+// The designs that are kept: one list, which is drawn in the curves and compared.
+import { breakable, element, find, short } from "./dom.js";
+import { quantity } from "./numbers.js";
+
+const DASHES = [
+  [8, 4],
+  [3, 3],
+  [10, 3, 3, 3],
+  [1, 4],
+];
+const last = (values) => (values && values.length ? values[values.length - 1] : null);
+
+function patch(paint) {
+  const made = element("span", { class: "patch" });
+  made.style.background = `var(${paint})`;
+  return made;
+}
+
+export class Designs {
+  // ask(message): tells the program; drawn(list): shows the curves of the list, the present design first.
+  constructor(ask, drawn) {
+    Object.assign(this, { ask, drawn, now: null, kept: [], rows: [], most: 4, hidden: new Set() });
+  }
+
+  // The present design: its numbers, and whether they are of a coarse press.
+  present(numbers, quality) {
+    this.now = {
+      name: quality === "coarse" ? "this design (coarse)" : "this design",
+      numbers,
+      colour: "--series",
+    };
+    this.show();
+  }
+
+  hear({ designs, rows, most }) {
+    this.kept = designs.map((one, i) => ({
+      ...one,
+      number: i,
+      colour: `--kept-${i % DASHES.length}`,
+      dash: DASHES[i % DASHES.length],
+    }));
+    Object.assign(this, { rows, most });
+    for (const name of this.hidden) if (!this.kept.some((one) => one.name === name)) this.hidden.delete(name);
+    this.show();
+  }
+
+  toggle(name) {
+    if (!this.hidden.delete(name)) this.hidden.add(name);
+    this.show();
+  }
+
+  show() {
+    const list = [...(this.now ? [this.now] : []), ...this.kept].map((one) => ({
+      ...one,
+      hidden: this.hidden.has(one.name),
+    }));
+    this.drawn(list);
+    find("#legend").replaceChildren(
+      ...list.map((one) =>
+        element(
+          "li",
+          {},
+          element(
+            "button",
+            {
+              type: "button",
+              "aria-pressed": String(!one.hidden),
+              title: "Hide or show",
+              onclick: () => this.toggle(one.name),
+            },
+            patch(one.colour),
+            one.name,
+          ),
+        ),
+      ),
+    );
+    find("#compare").replaceChildren(
+      ...(this.kept.length
+        ? [this.list(), this.table()]
+        : [
+            element(
+              "p",
+              { class: "soft" },
+              `Keep up to ${this.most} designs: they stay in the curves, and here stands in what they differ.`,
+            ),
+          ]),
+    );
+  }
+
+  list() {
+    return element(
+      "ul",
+      { class: "kept", "aria-label": "Kept designs" },
+      ...this.kept.map((one) => {
+        const name = element("input", {
+          type: "text",
+          value: one.name,
+          maxlength: 60,
+          "aria-label": `Name of kept design ${one.number + 1}`,
+        });
+        name.addEventListener("change", () =>
+          this.ask({ do: "rename", number: one.number, name: name.value }),
+        );
+        const numbers = one.numbers || {},
+          button = (words, what, action) =>
+            element(
+              "button",
+              { type: "button", "aria-label": `${what} ${one.name}`, onclick: action },
+              words,
+            );
+        return element(
+          "li",
+          {},
+          patch(one.colour),
+          name,
+          button("Use", "Go on with", () => this.ask({ do: "take", number: one.number })),
+          button(this.hidden.has(one.name) ? "Show" : "Hide", "Hide or show", () => this.toggle(one.name)),
+          button("×", "Delete", () => this.ask({ do: "drop", number: one.number })),
+          element(
+            "p",
+            { class: "found" },
+            one.numbers
+              ? `${quantity(last(numbers.open_circuit_voltage_V), "V")}, ${quantity(last(numbers.reaction_force_N), "N")}`
+              : "not pressed yet",
+          ),
+        );
+      }),
+    );
+  }
+
+  table() {
+    const head = element(
+      "tr",
+      {},
+      element("td", {}),
+      ...this.kept.map((one) => element("th", { scope: "col" }, one.name)),
+    );
+    const rows = this.rows.map((row) =>
+      element(
+        "tr",
+        {},
+        element("th", { scope: "row" }, ...breakable(row.label + (row.unit ? ` (${row.unit})` : ""))),
+        ...row.cells.map((cell) => element("td", {}, short(cell))),
+      ),
+    );
+    return element(
+      "div",
+      { class: "wide", tabindex: 0, role: "region", "aria-label": "Compared designs" },
+      element("table", {}, element("thead", {}, head), element("tbody", {}, ...rows)),
+    );
+  }
+}

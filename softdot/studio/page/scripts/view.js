@@ -1,0 +1,434 @@
+// The 3D view: camera, mouse, keys and the controls beside it.
+import * as THREE from "./three.module.min.js";
+import { OrbitControls } from "./OrbitControls.js";
+import { Bodies } from "./bodies.js";
+import { element } from "./dom.js";
+import { colourBar, drawMarks, legend } from "./marks.js";
+
+const SLANTED = [0.46, -0.84, 0.3];
+const VIEWS = {
+  Slanted: SLANTED,
+  Front: [0, -1, 0],
+  Back: [0, 1, 0],
+  Left: [-1, 0, 0],
+  Right: [1, 0, 0],
+  Top: [0, -1e-4, 1],
+  Bottom: [0, -1e-4, -1],
+};
+// Room beside the body for what is written there, in px.
+const ROOM = { left: 12, right: 136, top: 34, bottom: 52 },
+  ROOM_OF_BAR = 34;
+const TURN = 0.1,
+  TICK_MS = 400;
+const spoken = (value) => String(Number(value.toPrecision(3)));
+
+export class View {
+  // box: the element that holds the canvas and its controls.
+  constructor(box) {
+    this.box = box;
+    this.find = (selector) => box.querySelector(selector);
+    this.canvas = this.find("canvas");
+    this.bodies = new Bodies();
+    this.fitted = true; // as long as nobody has moved or zoomed
+    this.sized = true;
+    try {
+      this.renderer = new THREE.WebGLRenderer({
+        canvas: this.canvas,
+        antialias: true,
+        alpha: true,
+        stencil: true,
+      });
+    } catch {
+      this.find(".shown").textContent = "This browser cannot draw in 3D (no WebGL).";
+      return;
+    }
+    this.camera = new THREE.OrthographicCamera();
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.addEventListener("change", () => this.draw());
+    this.controls.addEventListener("start", () => this.find(".hover").replaceChildren());
+    this.looking(SLANTED);
+    this.listen();
+    this.wake(false);
+    new ResizeObserver(() => (this.fitted ? this.fit() : this.draw())).observe(this.canvas);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
+  }
+
+  // data: of export/solid_view.py; words: what it is.
+  show(data, words) {
+    this.find(".shown").textContent = words;
+    this.data = data;
+    if (!this.renderer) return;
+    const { bodies } = this,
+      moved = bodies.moved;
+    bodies.load(data);
+    if (!moved) this.place((bodies.low[1] + bodies.high[1]) / 2 + 1e-4 * (bodies.high[1] - bodies.low[1]));
+    if (!moved && data.plane > bodies.low[1] && data.plane < bodies.high[1]) this.place(data.plane);
+    const parts = [...data.names.map((name, i) => [name, data.colours[i]]), ["dot", data.dotColour]];
+    legend(this.find(".legend"), parts.reverse(), bodies.hidden, (name) => this.toggle(name));
+    const slider = this.find(".step");
+    slider.max = String(data.steps.length - 1);
+    this.find(".play").disabled = data.steps.length < 2;
+    this.find(".section").disabled = data.slice;
+    this.go(data.steps.length - 1);
+    if (this.fitted) this.fit();
+  }
+
+  toggle(name) {
+    this.bodies.hidden[name] = !this.bodies.hidden[name];
+    this.bodies.cut();
+    this.draw();
+    return this.bodies.hidden[name];
+  }
+
+  go(step) {
+    const { bodies, data } = this,
+      { indentation, force } = data.steps[step];
+    bodies.step = step;
+    bodies.update();
+    this.find(".step").value = String(step);
+    this.find(".step-text").textContent = `${indentation.toFixed(3)} mm, ${force.toPrecision(3)} N`;
+    const { shown } = bodies;
+    colourBar(
+      this.find(".bar"),
+      shown,
+      shown && shown.factor * data.tops[bodies.field],
+      shown && data[shown.map || "colourMap"],
+    );
+    this.draw();
+  }
+
+  // Where the section is; it stays inside the body.
+  place(at) {
+    const { bodies } = this,
+      axis = bodies.section.axis === "x" ? 0 : 1,
+      inset = 1e-4 * (bodies.high[axis] - bodies.low[axis]);
+    bodies.section.at = Math.min(bodies.high[axis] - inset, Math.max(bodies.low[axis] + inset, at));
+    bodies.cut();
+    this.draw();
+  }
+
+  looking(direction) {
+    const away = new THREE.Vector3(...direction).normalize().multiplyScalar(this.away || 10);
+    this.camera.position.copy(this.controls.target).add(away);
+    this.controls.update();
+  }
+
+  // All corners of what is shown, the dot above it included.
+  corners() {
+    const { low, high } = this.bodies,
+      dot = this.data.dotPoints,
+      ends = [[...low], [...high]];
+    for (let i = 0; i < dot.length; i++) {
+      ends[0][i % 3] = Math.min(ends[0][i % 3], dot[i]);
+      ends[1][i % 3] = Math.max(ends[1][i % 3], dot[i]);
+    }
+    return [0, 1, 2, 3, 4, 5, 6, 7].map(
+      (n) => new THREE.Vector3(ends[n & 1][0], ends[(n >> 1) & 1][1], ends[n >> 2][2]),
+    );
+  }
+
+  // The camera so near that all of it is seen, in the direction in which it looks.
+  fit() {
+    const { camera, canvas } = this;
+    if (!this.data || !canvas.clientHeight) return;
+    const corners = this.corners(),
+      size = corners[0].distanceTo(corners[7]);
+    camera.updateMatrixWorld();
+    const turned = corners.map((one) => one.clone().applyQuaternion(camera.quaternion.clone().invert()));
+    const [low, high] = [Math.min, Math.max].map((end) =>
+      ["x", "y", "z"].map((name) => end(...turned.map((one) => one[name]))),
+    );
+    const wide = Math.max(60, canvas.clientWidth - ROOM.left - ROOM.right);
+    const bottom = ROOM.bottom + (this.bodies.shown ? ROOM_OF_BAR : 0);
+    const tall = Math.max(60, canvas.clientHeight - ROOM.top - bottom);
+    const unit = Math.max((high[0] - low[0]) / wide, (high[1] - low[1]) / tall); // mm of a px
+    const middle = new THREE.Vector3(...low.map((one, i) => (one + high[i]) / 2));
+    middle.x += ((ROOM.right - ROOM.left) * unit) / 2;
+    middle.y += ((ROOM.top - bottom) * unit) / 2;
+    middle.applyQuaternion(camera.quaternion);
+    const away = camera.position.clone().sub(this.controls.target).normalize();
+    this.away = 3 * size;
+    this.half = (unit * canvas.clientHeight) / 2;
+    [camera.near, camera.far, camera.zoom] = [0.01 * size, 12 * size, 1];
+    this.centre = middle;
+    this.controls.target.copy(middle);
+    camera.position.copy(middle).addScaledVector(away, this.away);
+    this.controls.update();
+    this.fitted = true;
+    this.draw();
+  }
+
+  draw() {
+    if (this.waiting || !this.data) return;
+    this.waiting = requestAnimationFrame(() => {
+      this.waiting = null;
+      this.render();
+    });
+  }
+
+  render() {
+    const { renderer, camera, canvas } = this,
+      [width, height] = [canvas.clientWidth, canvas.clientHeight];
+    if (!width || !height || !this.half) return;
+    renderer.setPixelRatio(window.devicePixelRatio || 1);
+    renderer.setSize(width, height, false);
+    const half = this.half,
+      aspect = width / height;
+    [camera.left, camera.right, camera.top, camera.bottom] = [-half * aspect, half * aspect, half, -half];
+    camera.updateProjectionMatrix();
+    renderer.render(this.bodies.scene, camera);
+    this.mark(width, height);
+  }
+
+  mark(width, height) {
+    const { camera, bodies } = this;
+    const project = (point) => {
+      const at = new THREE.Vector3(...point).project(camera);
+      return [((at.x + 1) / 2) * width, ((1 - at.y) / 2) * height];
+    };
+    this.project = project;
+    const back = camera.quaternion.clone().invert();
+    const turn = (one) => {
+      const at = new THREE.Vector3(...one).applyQuaternion(back);
+      return [at.x, at.y];
+    };
+    drawMarks(this.find("svg.marks"), {
+      low: bodies.low,
+      high: bodies.high,
+      project,
+      turn,
+      width,
+      height,
+      pixels: (height * camera.zoom) / (2 * this.half),
+      withDimensions: this.sized,
+    });
+    this.handle();
+  }
+
+  // The handle of the section stands at the upper edge of the body.
+  handle() {
+    const { low, high, section } = this.bodies,
+      handle = this.find(".handle"),
+      on = Boolean(section.axis) && !this.data.slice;
+    handle.hidden = !on;
+    if (!on) return;
+    const axis = section.axis === "x" ? 0 : 1,
+      at = [high[0], low[1], high[2]];
+    at[axis] = section.at;
+    const [x, y] = this.project(at);
+    handle.style.left = `${Math.min(Math.max(x + 4, 0), this.canvas.clientWidth - 30)}px`;
+    handle.style.top = `${Math.min(Math.max(y - 30, 0), this.canvas.clientHeight - 30)}px`;
+    handle.setAttribute("aria-valuenow", section.at.toFixed(3));
+    handle.setAttribute("aria-valuemin", low[axis].toFixed(3));
+    handle.setAttribute("aria-valuemax", high[axis].toFixed(3));
+    handle.setAttribute("aria-valuetext", `${section.axis} = ${section.at.toFixed(2)} mm`);
+  }
+
+  // The wheel turns the page until the view has been clicked.
+  wake(on) {
+    this.awake = on;
+    this.controls.enableZoom = on;
+    this.canvas.style.touchAction = on ? "none" : "pan-y";
+    if (on) this.find(".wheel").hidden = true;
+  }
+
+  listen() {
+    const { canvas, find } = this;
+    this.buttons();
+    this.dragged();
+    canvas.addEventListener("pointerdown", () => this.wake(true));
+    document.addEventListener("pointerdown", (event) => {
+      if (!this.box.contains(event.target)) this.wake(false);
+    });
+    canvas.addEventListener(
+      "wheel",
+      () => {
+        if (this.awake) {
+          this.fitted = false;
+          return;
+        }
+        find(".wheel").hidden = false;
+        clearTimeout(this.hiding);
+        this.hiding = setTimeout(() => {
+          find(".wheel").hidden = true;
+        }, 1500);
+      },
+      { passive: true },
+    );
+    canvas.addEventListener("keydown", (event) => this.key(event));
+    canvas.addEventListener("pointermove", (event) => this.hover(event));
+    canvas.addEventListener("pointerleave", () => find(".hover").replaceChildren());
+    this.controls.addEventListener("end", () => {
+      if (this.controls.target.distanceTo(this.centre || this.controls.target) > 0) this.fitted = false;
+    });
+  }
+
+  buttons() {
+    const { find, bodies } = this;
+    const sizes = element(
+      "button",
+      { type: "button", "aria-pressed": "true", title: "Show or hide the dimensions" },
+      "Sizes",
+    );
+    sizes.addEventListener("click", () => {
+      this.sized = !this.sized;
+      sizes.setAttribute("aria-pressed", String(this.sized));
+      this.draw();
+    });
+    find(".views").replaceChildren(
+      element("button", { type: "button", title: "Fit (F)", onclick: () => this.fit() }, "Fit"),
+      ...Object.entries(VIEWS).map(([name, way], number) =>
+        element(
+          "button",
+          {
+            type: "button",
+            title: `${name} (${number})`,
+            onclick: () => {
+              this.looking(way);
+              this.fit();
+            },
+          },
+          name,
+        ),
+      ),
+      sizes,
+    );
+    find(".step").addEventListener("input", (event) => this.data && this.go(Number(event.target.value)));
+    find(".play").addEventListener("click", () => this.play());
+    find(".colour").addEventListener("change", (event) => {
+      bodies.field = event.target.value;
+      if (this.data) this.go(bodies.step);
+      if (this.fitted) this.fit();
+    });
+    find(".section").addEventListener("change", (event) => {
+      bodies.section.axis = event.target.value;
+      const axis = event.target.value === "x" ? 0 : 1;
+      if (this.data) this.place(axis === 1 ? this.data.plane : (bodies.low[0] + bodies.high[0]) / 2);
+    });
+  }
+
+  play() {
+    const button = this.find(".play");
+    if (this.ticking) {
+      this.ticking = clearInterval(this.ticking);
+      button.textContent = "Play";
+      return;
+    }
+    button.textContent = "Stop";
+    this.ticking = setInterval(
+      () => this.data && this.go((this.bodies.step + 1) % this.data.steps.length),
+      TICK_MS,
+    );
+  }
+
+  // The handle follows the mouse along its axis, and the arrow keys.
+  dragged() {
+    const handle = this.find(".handle"),
+      { bodies } = this;
+    let held = null;
+    const along = () => {
+      const axis = bodies.section.axis === "x" ? 0 : 1,
+        unit = [0, 0, 0];
+      const start = this.project(unit);
+      unit[axis] = 1;
+      const [x, y] = this.project(unit).map((one, i) => one - start[i]),
+        square = x * x + y * y;
+      return square > 25 ? [x / square, y / square] : [0, -1 / Math.sqrt(Math.max(square, 400))];
+    };
+    handle.addEventListener("pointerdown", (event) => {
+      held = [event.clientX, event.clientY, bodies.section.at];
+      handle.setPointerCapture(event.pointerId);
+    });
+    handle.addEventListener("pointermove", (event) => {
+      if (!held) return;
+      const [x, y] = along();
+      bodies.moved = true;
+      this.place(held[2] + (event.clientX - held[0]) * x + (event.clientY - held[1]) * y);
+    });
+    for (const kind of ["pointerup", "pointercancel"])
+      handle.addEventListener(kind, () => {
+        held = null;
+      });
+    handle.addEventListener("keydown", (event) => {
+      const way = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
+      if (!way) return;
+      const axis = bodies.section.axis === "x" ? 0 : 1;
+      bodies.moved = true;
+      this.place(bodies.section.at + (way * (bodies.high[axis] - bodies.low[axis])) / 40);
+      event.preventDefault();
+    });
+  }
+
+  key(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey || !this.data) return;
+    const offset = this.camera.position.clone().sub(this.controls.target),
+      way = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    const named = Object.values(VIEWS)[Number(event.key)];
+    if (way && event.shiftKey) this.shift(...way);
+    else if (way) {
+      const flat = Math.hypot(offset.x, offset.y),
+        yaw = Math.atan2(offset.y, offset.x) - TURN * way[0];
+      const tilt = Math.max(-1.55, Math.min(1.55, Math.atan2(offset.z, flat) + TURN * way[1])),
+        away = offset.length();
+      offset
+        .set(Math.cos(yaw) * Math.cos(tilt), Math.sin(yaw) * Math.cos(tilt), Math.sin(tilt))
+        .multiplyScalar(away);
+      this.camera.position.copy(this.controls.target).add(offset);
+      this.controls.update();
+    } else if (event.key === "+" || event.key === "-") {
+      this.camera.zoom *= event.key === "+" ? 1.2 : 1 / 1.2;
+      this.fitted = false;
+      this.draw();
+    } else if (event.key.toLowerCase() === "f") this.fit();
+    else if (event.key === "Escape") this.wake(false);
+    else if (/^[0-6]$/.test(event.key) && named) {
+      this.looking(named);
+      this.fit();
+    } else return;
+    event.preventDefault();
+  }
+
+  shift(x, y) {
+    const right = new THREE.Vector3(1, 0, 0).applyQuaternion(this.camera.quaternion),
+      up = new THREE.Vector3(0, 1, 0).applyQuaternion(this.camera.quaternion);
+    const by = right.multiplyScalar(-0.1 * x * this.half).addScaledVector(up, 0.1 * y * this.half);
+    this.controls.target.add(by);
+    this.camera.position.add(by);
+    this.fitted = false;
+    this.controls.update();
+  }
+
+  // The name and value of what is under the mouse, once it rests for a frame.
+  hover(event) {
+    if (event.buttons || !this.data || this.asking) return;
+    this.asking = requestAnimationFrame(() => {
+      this.asking = null;
+      const box = this.canvas.getBoundingClientRect(),
+        ray = new THREE.Raycaster(),
+        place = this.find(".hover");
+      const [x, y] = [event.clientX - box.left, event.clientY - box.top];
+      ray.setFromCamera(new THREE.Vector2((2 * x) / box.width - 1, 1 - (2 * y) / box.height), this.camera);
+      const met = this.bodies.meets(ray),
+        { shown } = this.bodies;
+      const value =
+        met && met.value !== null && met.value !== undefined && shown
+          ? `: ${spoken(met.value)} ${shown.unit}`
+          : "";
+      place.textContent = met ? met.name + value : "";
+      place.style.left = `${Math.min(x + 14, box.width - 120)}px`;
+      place.style.top = `${y + 10}px`;
+    });
+  }
+
+  // A small picture of what is shown, as the address of a JPEG; null where nothing is.
+  picture(width, height) {
+    if (!this.data || !this.half) return null;
+    this.render();
+    const made = element("canvas", { width, height }),
+      scale = Math.min(width / this.canvas.width, height / this.canvas.height);
+    const [w, h] = [this.canvas.width * scale, this.canvas.height * scale];
+    made.getContext("2d").drawImage(this.canvas, (width - w) / 2, (height - h) / 2, w, h);
+    return made.toDataURL("image/png");
+  }
+}
