@@ -9,7 +9,7 @@ function softdotViewer(box) {
     return { show() {} };
   }
 
-  const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const bytes = (found) => (typeof found === "string" ? Uint8Array.from(atob(found), (c) => c.charCodeAt(0)) : found);
   const floats = (text) => new Float32Array(bytes(text).buffer);
   const integers = (text) => new Uint32Array(bytes(text).buffer);
   const state = { step: 0, mode: "part", cut: true, yaw: 0.5, tilt: 0.3, zoom: 1.2 };

@@ -28,11 +28,15 @@ class Autosave:
     def __init__(self, place: Path) -> None:
         self._place = place
 
-    def save(self, name: str, text: str) -> None:
-        """Replace the design of a tab, whole. A disk that cannot be written loses nothing that is open."""
-        with suppress(OSError):
+    def save(self, name: str, text: str) -> str | None:
+        """Replace the design of a tab, whole. The sentence that says why it could not be saved, None where it was."""
+        try:
             self._place.mkdir(parents=True, exist_ok=True, mode=0o700)
             write_whole_text(self._file(name), text)
+        except OSError as error:
+            reason = error.strerror or type(error).__name__
+            return f"This design is not saved: {self._place} cannot be written ({reason}). Save it as a file."
+        return None
 
     def load(self, name: str) -> str | None:
         """The design of a tab, None where there is none. InputError for a name that none of ours is."""
