@@ -20,10 +20,13 @@ POLICY = "; ".join(
 )
 """Nothing from elsewhere, no script or style in the text of the page, no frame around it."""
 PAPER_POLICY = (
-    "sandbox allow-scripts; default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
+    "sandbox allow-scripts; default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:; "
+    "frame-ancestors 'self'"
 )
 """For reports, which hold their own scripts: they run as a page of nowhere, which reaches neither the studio nor the
 net."""
+FRAME_POLICY = "default-src 'none'; style-src 'self'; frame-src 'self'; base-uri 'none'; frame-ancestors 'none'"
+"""For the page around a report: its frame stays with the studio's own addresses."""
 HEADERS = {
     "Content-Security-Policy": POLICY,
     "X-Content-Type-Options": "nosniff",

@@ -13,7 +13,8 @@ from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from foundation.errors import InputError
 from softdot.studio.frames import packed
-from softdot.studio.guard import HEADERS, PAPER_POLICY
+from softdot.studio.guard import FRAME_POLICY, HEADERS, PAPER_POLICY
+from softdot.studio.processes import MachineError, TaskRefused
 from softdot.studio.session import Session
 from softdot.studio.tabs import Tabs
 from softdot.studio.uploads import LARGEST_MB, split, unpack
@@ -23,6 +24,10 @@ TEXTS = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".s
 KINDS = {ending: f"{kind}; charset=utf-8" for ending, kind in TEXTS.items()} | {".png": "image/png"}
 FOLDERS = PAGE, PAGE.joinpath("scripts"), PAGE.joinpath("vendor")
 ASSETS = {one.name: one for folder in FOLDERS for one in folder.iterdir() if one.name.endswith((".css", ".js", ".svg"))}
+FRAME = """<!doctype html><html lang="en"><meta charset="utf-8"><title>{title}</title>
+<link rel="stylesheet" href="/assets/frame.css">
+<iframe sandbox="allow-scripts" src="{address}" title="{title}"></iframe>
+"""
 LARGEST_MESSAGE = 1 << 20
 
 
@@ -90,16 +95,38 @@ class AssetHandler(Guarded):
 
 
 class FileHandler(Guarded):
-    """What a task has made, under a random address that only its tab was told."""
+    """What a task has made, under a random address that only its tab was told, and that is no key to anything else."""
 
-    def get(self, token: str) -> None:
-        """A download, a picture, or a report, which may do nothing but show itself."""
+    needs_key = False
+
+    def path(self, token: str) -> Path:
+        """The file of an address. HTTPError 404."""
         path = next((found for one in self.tabs.sessions.values() if (found := one.files.get(token))), None)
         if path is None or not path.is_file():
             raise HTTPError(404)
+        return path
+
+    async def get(self, token: str) -> None:
+        """A download, a picture, or a report, which may do nothing but show itself in a frame of the studio."""
+        path = self.path(token)
         if path.suffix == ".html":
             self.set_header("Content-Security-Policy", PAPER_POLICY)
-        self.send_file(path.read_bytes(), path.name)
+            self.set_header("X-Frame-Options", "SAMEORIGIN")
+        try:
+            content = await asyncio.to_thread(path.read_bytes)
+        except OSError:
+            raise HTTPError(404) from None
+        self.send_file(content, path.name)
+
+
+class ShowHandler(FileHandler):
+    """A report in a frame: the policy around it lets no script in it lead the frame elsewhere."""
+
+    async def get(self, token: str) -> None:
+        """The page around it."""
+        path = self.path(token)
+        self.set_header("Content-Security-Policy", FRAME_POLICY)
+        self.send_file(FRAME.format(address=f"/files/{token}", title=path.stem).encode(), "frame.html")
 
 
 @stream_request_body
@@ -146,22 +173,26 @@ class SocketHandler(Guarded, WebSocketHandler):
         return self.tabs.guard.refusal({**self.request.headers, "Origin": origin}, None, needs_origin=True) is None
 
     async def open(self, *_: str) -> None:
-        """A tab is there."""
+        """A tab is there. It may be gone again before its form is made."""
+        tab = self.get_query_argument("tab", "") or None
         try:
-            self.session = self.tabs.session(self.get_query_argument("tab", "") or None)
+            self.session = session = self.tabs.session(tab, self.get_query_argument("copy", "") == "1")
         except InputError as error:
             self._send({"tell": "said", "text": str(error), "bad": True})
             self.close()
             return
-        session = self.session
-        session.send = self._send
         self._send({"tell": "tab", "name": session.name})
-        self._send({"tell": "form", **await self.tabs.form()})
         session.attach(self._send)
+        try:
+            self._send({"tell": "form", **await self.tabs.form()})
+        except (MachineError, TaskRefused) as error:
+            self._send(
+                {"tell": "said", "text": f"the form could not be made: {error}; load the page again", "bad": True}
+            )
 
     def on_message(self, message: str | bytes) -> None:
-        """One request."""
-        if self.session is None:
+        """One request; of a tab that another one has followed, nothing."""
+        if self.session is None or self.session.line != self._send:
             return
         try:
             asked = json.loads(message)
@@ -171,7 +202,7 @@ class SocketHandler(Guarded, WebSocketHandler):
 
     def on_close(self) -> None:
         """A tab is gone, or loads again."""
-        if self.session is not None:
+        if self.session is not None and self.session.line == self._send:
             self.tabs.left(self.session)
 
     def _send(self, message: dict[str, Any]) -> None:
@@ -190,6 +221,7 @@ def application(tabs: Tabs) -> Application:
             ("/upload", UploadHandler, shared),
             (r"/assets/([\w.-]+)", AssetHandler, shared),
             (r"/files/([\w-]+/[\w.-]+)", FileHandler, shared),
+            (r"/show/([\w-]+/[\w-]+\.html)", ShowHandler, shared),
         ],
         default_handler_class=MissingHandler,
         default_handler_args=shared,

@@ -10,17 +10,18 @@ from tornado.netutil import bind_sockets
 
 from foundation.errors import InputError
 from foundation.scratch_folders import scratch_folder
+from softdot.studio.admission import Admission, cores
 from softdot.studio.autosave import Autosave, folder
+from softdot.studio.following import Studio
 from softdot.studio.guard import Guard
 from softdot.studio.handlers import application
 from softdot.studio.processes import InTurn, Pool
-from softdot.studio.session import Studio
 from softdot.studio.tabs import Tabs
 
 LARGEST_HEADER, LARGEST_BODY = 1 << 16, 1 << 16
 """Bytes of what is sent without a key; an upload has a bound of its own."""
 LONGEST_LOOK_S = 30.0
-"""A design that takes longer to draw or to check is refused: its numbers are absurd."""
+"""For a design to be drawn or checked by a process that has loaded; after it another process tries once more."""
 
 
 async def serve(host: str, port: int, start: str, ready: Callable[[str], None]) -> None:
@@ -37,7 +38,7 @@ async def serve(host: str, port: int, start: str, ready: Callable[[str], None]) 
     guard = Guard.of(host, sockets[0].getsockname()[1])
     with scratch_folder() as scratch:
         draw, check = (InTurn(warm_up, LONGEST_LOOK_S) for warm_up in ("design:warm_up", "form:warm_up"))
-        solve = Pool("press:warm_up")
+        solve = Pool("press:warm_up", {"press": Admission(cores()), "long": Admission(max(1, cores() - 1))})
         try:
             check.prepare()
             tabs = Tabs(guard, Studio(draw, check, solve, Autosave(folder()), scratch), start)

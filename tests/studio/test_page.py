@@ -42,7 +42,7 @@ def listen(tab: Tab) -> None:
 
 
 def heard(tab: Tab, frame: str) -> None:
-    told = json.loads(frame)
+    told = json.loads(frame) if isinstance(frame, str) else {"tell": "view"}
     if told["tell"] == "curves":
         tab.numbers = told["curves"][-1]
 

@@ -194,6 +194,13 @@ def test_an_endless_header_is_cut(studio):
     assert asked(studio, f"/?key={studio.key}")[0] == 200
 
 
+def heard(message):
+    """What the program tells; of a frame with arrays its head."""
+    if isinstance(message, bytes):
+        return json.loads(message[4 : 4 + int.from_bytes(message[:4], "little")])
+    return json.loads(message)
+
+
 def spoken(studio, *messages, answers):
     """What the socket tells after some messages, the first of each kind in answers."""
 
@@ -202,8 +209,8 @@ def spoken(studio, *messages, answers):
         address = f"ws://127.0.0.1:{studio.port}/socket?key={studio.key}&tab={tab}"
         line = await websocket_connect(HTTPRequest(address, headers={"Origin": origin(studio)}))
         found = {}
-        while "document" not in found:
-            told = json.loads(await line.read_message())
+        while "state" not in found:
+            told = heard(await line.read_message())
             found[told["tell"]] = told
         studio.tab = found["tab"]["name"]
         found.pop("said", None)
@@ -216,7 +223,7 @@ def spoken(studio, *messages, answers):
             told = await line.read_message()
             if told is None:
                 return {"closed": True}
-            told = json.loads(told)
+            told = heard(told)
             found[told["tell"]] = told
         line.close()
         return found

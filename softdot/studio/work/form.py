@@ -8,6 +8,7 @@ from softdot.commands.new import UNITS
 from softdot.config.default_design import default_design
 from softdot.config.schema import Config
 from softdot.config.toml import leaves, parse_toml
+from softdot.studio.starts import starts
 from solve.mechanisms import MECHANISMS
 from solve.mechanisms.base import MechanismType
 
@@ -15,12 +16,14 @@ from solve.mechanisms.base import MechanismType
 def form() -> dict[str, Any]:
     """Schema of the configuration, endings of keys and their units, materials, standards, mechanisms.
 
-    basic : dotted keys that the page shows first, which are those that a template states.
+    basic : dotted keys that the page shows first, which are those that a template states. starts : designs to begin
+    with (softdot.studio.starts).
     """
     return {
         "schema": Config.model_json_schema(),
         "units": UNITS,
         "basic": _basic(),
+        "starts": starts(),
         **{what: LISTS[what]() for what in ("materials", "standards")},
         "mechanisms": [_mechanism(kind) for kind in MECHANISMS.values()],
     }

@@ -318,6 +318,17 @@ export class Curves {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
   }
 
+  show(designs) {
+    this.designs = designs;
+    this.draw();
+  }
+
+  // runs: of a recording, which lie over the curves; none for no recording.
+  record(runs) {
+    this.runs = runs;
+    this.draw();
+  }
+
   draw() {
     const across = this.over === "time" ? "time (s)" : "depth (mm)";
     for (const plot of this.plots)

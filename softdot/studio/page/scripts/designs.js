@@ -19,41 +19,31 @@ function patch(paint) {
 export class Designs {
   // ask(message): tells the program; drawn(list): shows the curves of the list, the present design first.
   constructor(ask, drawn) {
-    Object.assign(this, { ask, drawn, now: null, kept: [], rows: [], most: 4, hidden: new Set() });
+    Object.assign(this, { ask, drawn, now: null, kept: [], rows: [], most: 4 });
   }
 
-  // The present design: its numbers, and whether they are of a coarse press.
-  present(numbers, quality) {
-    this.now = {
-      name: quality === "coarse" ? "this design (coarse)" : "this design",
-      numbers,
-      colour: "--series",
-    };
+  // The last press: of the present design, or of the one before.
+  present({ numbers, quality }) {
+    const name = quality === "coarse" ? "this design (coarse)" : "this design";
+    this.now = { name, numbers, colour: "--series", hidden: Boolean(this.now && this.now.hidden) };
     this.show();
   }
 
   hear({ designs, rows, most }) {
-    this.kept = designs.map((one, i) => ({
-      ...one,
-      number: i,
-      colour: `--kept-${i % DASHES.length}`,
-      dash: DASHES[i % DASHES.length],
-    }));
+    const looks = (i) => ({ colour: `--kept-${i % DASHES.length}`, dash: DASHES[i % DASHES.length] });
+    this.kept = designs.map((one, i) => ({ ...one, number: i, ...looks(i) }));
     Object.assign(this, { rows, most });
-    for (const name of this.hidden) if (!this.kept.some((one) => one.name === name)) this.hidden.delete(name);
     this.show();
   }
 
-  toggle(name) {
-    if (!this.hidden.delete(name)) this.hidden.add(name);
-    this.show();
+  toggle(one) {
+    if (one !== this.now) return this.ask({ do: "hide", number: one.number, hidden: !one.hidden });
+    one.hidden = !one.hidden;
+    return this.show();
   }
 
   show() {
-    const list = [...(this.now ? [this.now] : []), ...this.kept].map((one) => ({
-      ...one,
-      hidden: this.hidden.has(one.name),
-    }));
+    const list = [...(this.now ? [this.now] : []), ...this.kept];
     this.drawn(list);
     find("#legend").replaceChildren(
       ...list.map((one) =>
@@ -66,7 +56,7 @@ export class Designs {
               type: "button",
               "aria-pressed": String(!one.hidden),
               title: "Hide or show",
-              onclick: () => this.toggle(one.name),
+              onclick: () => this.toggle(one),
             },
             patch(one.colour),
             one.name,
@@ -114,7 +104,7 @@ export class Designs {
           patch(one.colour),
           name,
           button("Use", "Go on with", () => this.ask({ do: "take", number: one.number })),
-          button(this.hidden.has(one.name) ? "Show" : "Hide", "Hide or show", () => this.toggle(one.name)),
+          button(one.hidden ? "Show" : "Hide", "Hide or show", () => this.toggle(one)),
           button("×", "Delete", () => this.ask({ do: "drop", number: one.number })),
           element(
             "p",

@@ -1,7 +1,7 @@
 // The right side: warnings, what moves the voltage, work for the bench, comparison.
 import { tornado } from "./charts.js";
 import { duration, element, find } from "./dom.js";
-import { go, named } from "./form.js";
+import { go, named } from "./form_search.js";
 
 export const TITLES = {
   kit: "Kit",

@@ -1,6 +1,6 @@
 // The middle: how far the press is, its numbers with error bars, circuit.
 import { channel } from "./charts.js";
-import { duration, element, find } from "./dom.js";
+import { element, find } from "./dom.js";
 import { quantity } from "./numbers.js";
 
 const QUANTITIES = [
@@ -11,40 +11,11 @@ const QUANTITIES = [
 const COARSE_DIGITS = 2;
 const last = (values) => (values && values.length ? values[values.length - 1] : null);
 
-export function progress(told) {
-  const bar = find("#press progress");
-  const text =
-    told.stage === "press" && told.count
-      ? `load step ${told.done} of ${told.count}`
-      : told.stage === "error bars"
-        ? "error bars"
-        : told.stage;
-  const left =
-    told.left_s === null || told.left_s === undefined || !told.count ? "" : `, ${duration(told.left_s)} left`;
-  doing(`Pressing: ${text}${left}`, true);
-  bar.hidden = false;
-  if (told.count) bar.value = told.done / told.count;
-  else bar.removeAttribute("value");
-}
-
+// What the program says of the press.
 export function doing(text, busy, bad = false) {
   find("#press .doing").textContent = text;
   find("#press").classList.toggle("bad", bad);
   find("#press .cancel").hidden = !busy;
-  if (busy) find("#press .again").hidden = true;
-  if (!busy) find("#press progress").hidden = true;
-}
-
-export function ended(told, state) {
-  find("#press .again").hidden = !told.said;
-  if (told.said)
-    doing(told.said === "cancelled" ? "The press was cancelled." : told.said, false, Boolean(told.bad));
-  else if (state.ofArray)
-    doing(
-      "Pressed on large elements. Report and CAD is softdot array, as fine as the design asks for.",
-      false,
-    );
-  else doing(state.quality === "accurate" ? "Pressed, as softdot run does." : "Pressed.", false);
 }
 
 // Absolute error of a value and what it is of: the whole uncertainty, that of the mesh, or none.

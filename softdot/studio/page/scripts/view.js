@@ -54,9 +54,8 @@ export class View {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
   }
 
-  // data: of export/solid_view.py; words: what it is.
-  show(data, words) {
-    this.find(".shown").textContent = words;
+  // data: of export/solid_view.py.
+  show(data) {
     this.data = data;
     if (!this.renderer) return;
     const { bodies } = this,

@@ -1,0 +1,59 @@
+"""Facts about a design, each with the design to which it belongs."""
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+Json = dict[str, Any]
+Phase = Literal["edited", "checked", "drawn", "estimated", "coarse", "accurate", "failed", "cancelled"]
+
+
+@dataclass(frozen=True)
+class Origin:
+    """The design of which something was made. values : of its configuration, None before it was checked.
+
+    press_hash : of all that its press depends on, None where that is not known or nothing is pressed.
+    """
+
+    revision: int
+    text: str
+    values: Json | None = None
+    press_hash: str | None = None
+
+
+@dataclass(frozen=True)
+class Artefact:
+    """Something that was made of a design. number : grows with every artefact, so that a newer one is known by it."""
+
+    origin: Origin
+    content: Any
+    number: int
+
+
+@dataclass(frozen=True)
+class KnownPress:
+    """A press. quality : coarse, accurate, or array. complete : nothing of it is still to come."""
+
+    origin: Origin
+    label: str
+    quality: str
+    found: Json
+    complete: bool
+    number: int
+
+    @property
+    def failure(self) -> str | None:
+        """Why its steps end early, None where all converged."""
+        if self.quality == "array":
+            failure: str | None = self.found["array"].get("failure")
+            return failure
+        solver = self.found["numbers"]["solver"]
+        return None if solver["converged"] else str(solver["failure"])
+
+
+@dataclass(frozen=True)
+class Stop:
+    """A check or press that ended without an answer: that of this text, or of this press_hash."""
+
+    origin: Origin
+    phase: Phase
+    said: str
