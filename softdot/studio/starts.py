@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from importlib.resources import files
 from typing import Any
 
-from softdot.config.default_design import with_default_design
+from softdot.config.default_design import default_design, with_default_design
 
 STARTS = (
     ("softdot.config", "default", "The default design", "A flat effector on two media, its sides clamped."),
@@ -33,7 +33,7 @@ def sizes(text: str) -> dict[str, Any] | None:
     """
     try:
         tables = with_default_design(tomllib.loads(text))
-        segment = tables["segment"]
+        segment = {"length_mm": default_design()["segment"]["length_mm"], **tables["segment"]}
         found = {
             "length": float(segment["length_mm"]),
             "medium1": float(segment["medium1"]["thickness_mm"]),

@@ -1,5 +1,6 @@
 """The press of a design, coarse at once and accurate after that, with how far each can be trusted."""
 
+import math
 import pickle
 import time
 from collections.abc import Mapping
@@ -18,6 +19,7 @@ from softdot.studio.work.design import case_of, config_of, pressed_part
 from softdot.studio.work.remedies import late_remedies
 from softdot.summary import mesh_part, press_part
 from softdot.tolerances.responses import with_larger_elements
+from softdot.tolerances.tolerances import PERMITTIVITY_ROW
 from solve.result import PressResult, Step
 
 COARSE = 3.0
@@ -42,8 +44,23 @@ def accurate_press(text: str, tell: Tell) -> dict[str, Any]:
     if found["numbers"]["solver"]["converged"]:
         tell({"press": found})
         progress.stage("error bars")
-        return {**found, "view": None, "numbers": {**found["numbers"], **plain(case.uncertainty(found["numbers"]))}}
+        errors = with_charge(case.uncertainty(found["numbers"]))
+        return {**found, "view": None, "numbers": {**found["numbers"], **plain(errors)}}
     return found
+
+
+def with_charge(errors: Mapping[str, Any]) -> dict[str, Any]:
+    """The uncertainty of a press with that of its charge, charge_percent, where the voltage has one.
+
+    At open circuit V = Q / C, and C = eps A / t of the undeformed film: each part moves charge and voltage by the same
+    share, but for the permittivity, which moves the voltage alone.
+    """
+    whole, mesh = errors.get("uncertainty", {}), errors.get("discretisation_error", {})
+    if "voltage_percent" not in whole:
+        return dict(errors)
+    shares = [one["voltage_percent"] for one in whole["parts"] if not one["name"].startswith(PERMITTIVITY_ROW)]
+    added = {"uncertainty": {**whole, "charge_percent": math.hypot(*shares)}}
+    return {**errors, **added, "discretisation_error": {**mesh, "charge_percent": mesh["voltage_percent"]}}
 
 
 def press_of_cell(text: str, tell: Tell) -> dict[str, Any]:

@@ -201,6 +201,7 @@ class Plot {
       const [x, y] = [plot.valToPos(last(one.x), "x", true), last(one.y)],
         ends = [y - one.error, y + one.error].map((value) => plot.valToPos(value, "y", true));
       ctx.save();
+      ctx.setLineDash([]);
       ctx.strokeStyle = colour(one.colour);
       ctx.lineWidth = 1.5 * devicePixelRatio;
       ctx.beginPath();
@@ -299,7 +300,8 @@ class Plot {
   }
 }
 
-// All plots. designs: [{name, numbers, colour, dash, hidden}], the present one first; runs: of a recording.
+// All plots. designs: [{name, numbers, colour, dash, hidden, isNow}]; runs: [{name, run, colour, dash, hidden}] of a
+// recording, which lie over them.
 export class Curves {
   constructor(place, say) {
     this.place = place;
@@ -318,14 +320,8 @@ export class Curves {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
   }
 
-  show(designs) {
-    this.designs = designs;
-    this.draw();
-  }
-
-  // runs: of a recording, which lie over the curves; none for no recording.
-  record(runs) {
-    this.runs = runs;
+  show(designs, runs) {
+    Object.assign(this, { designs, runs });
     this.draw();
   }
 
@@ -338,7 +334,7 @@ export class Curves {
   ofDesigns(quantity) {
     return this.designs
       .filter((one) => !one.hidden && one.numbers)
-      .map(({ name, numbers, colour: paint, dash }, i) => {
+      .map(({ name, numbers, colour: paint, dash, isNow }) => {
         const percent = (numbers.uncertainty || {})[quantity.error],
           end = last(numbers[quantity.key]);
         const drawn =
@@ -351,21 +347,19 @@ export class Curves {
           ...drawn,
           colour: paint,
           dash,
-          width: i ? 1.6 : 2.4,
-          points: i === 0 && this.over === "depth",
+          width: isNow ? 2.4 : 1.6,
+          points: isNow && this.over === "depth",
           error,
         };
       });
   }
 
   ofRuns(quantity) {
-    const shown = this.runs.map((run, i) => ({
-      name: `recorded: ${run.label}`,
-      colour: "--recorded",
-      dash: [2, 3 + 2 * i],
-      width: 1.4,
-      ...recorded(run, quantity, this.over),
-    }));
+    const shown = this.runs
+      .filter((one) => !one.hidden)
+      .map(({ run, ...looks }) => {
+        return { ...looks, width: 1.6, ...recorded(run, quantity, this.over) };
+      });
     return shown.filter((one) => one.x && one.x.length > 1);
   }
 

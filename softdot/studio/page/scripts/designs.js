@@ -17,15 +17,22 @@ function patch(paint) {
 }
 
 export class Designs {
-  // ask(message): tells the program; drawn(list): shows the curves of the list, the present design first.
+  // ask(message): tells the program; drawn(list, runs): shows the curves of designs, the present one first, and of
+  // a recording.
   constructor(ask, drawn) {
-    Object.assign(this, { ask, drawn, now: null, kept: [], rows: [], most: 4 });
+    Object.assign(this, { ask, drawn, now: null, kept: [], runs: [], rows: [], most: 4 });
   }
 
   // The last press: of the present design, or of the one before.
   present({ numbers, quality }) {
     const name = quality === "coarse" ? "this design (coarse)" : "this design";
-    this.now = { name, numbers, colour: "--series", hidden: Boolean(this.now && this.now.hidden) };
+    this.now = {
+      name,
+      numbers,
+      colour: "--series",
+      isNow: true,
+      hidden: Boolean(this.now && this.now.hidden),
+    };
     this.show();
   }
 
@@ -36,17 +43,24 @@ export class Designs {
     this.show();
   }
 
+  // Runs of a recording, none where there is no recording.
+  record(runs) {
+    const looks = (i) => ({ colour: "--recorded", dash: [2, 3 + 2 * i] });
+    this.runs = runs.map((run, i) => ({ name: `recorded: ${run.label}`, run, hidden: false, ...looks(i) }));
+    this.show();
+  }
+
   toggle(one) {
-    if (one !== this.now) return this.ask({ do: "hide", number: one.number, hidden: !one.hidden });
+    if (this.kept.includes(one)) return this.ask({ do: "hide", number: one.number, hidden: !one.hidden });
     one.hidden = !one.hidden;
     return this.show();
   }
 
   show() {
     const list = [...(this.now ? [this.now] : []), ...this.kept];
-    this.drawn(list);
+    this.drawn(list, this.runs);
     find("#legend").replaceChildren(
-      ...list.map((one) =>
+      ...[...list, ...this.runs].map((one) =>
         element(
           "li",
           {},

@@ -30,7 +30,7 @@ const viewer = new View(find("#view3d"));
 const curves = new Curves(find("#curves"), (text) => {
   find("#heard").textContent = text;
 });
-const designs = new Designs(ask, (list) => curves.show(list));
+const designs = new Designs(ask, (list, runs) => curves.show(list, runs));
 const editor = new Editor(find("#text"), find("#toml .lines"));
 const start = new StartPage(find("#start"), ask);
 const tasks = new next.Tasks(ask, address);
@@ -160,7 +160,7 @@ function paintContents() {
     }
   }
   if (isNew("recording", read)) {
-    curves.record(read ? read.result.runs : []);
+    designs.record(read ? read.result.runs : []);
     if (read && store.form) recording.show(read.result, ask, store.form.units);
     else find("#recording").replaceChildren();
     tab.painted.verdict = undefined;

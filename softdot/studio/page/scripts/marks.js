@@ -73,7 +73,7 @@ function dimensions(low, high, project) {
 }
 
 function axes(turn, height) {
-  const group = node("g", { class: "axes", transform: `translate(34 ${height - 34})` });
+  const group = node("g", { class: "axes", transform: `translate(44 ${height - 40})` });
   for (const [name, one] of AXES) {
     const [x, y] = turn(one).map((value) => 24 * value);
     group.append(

@@ -1,25 +1,14 @@
 // The 3D view: camera, mouse, keys and the controls beside it.
 import * as THREE from "./three.module.min.js";
-import { OrbitControls } from "./OrbitControls.js";
 import { Bodies } from "./bodies.js";
+import { Camera, VIEWS } from "./camera.js";
 import { element } from "./dom.js";
 import { colourBar, drawMarks, legend } from "./marks.js";
 
-const SLANTED = [0.46, -0.84, 0.3];
-const VIEWS = {
-  Slanted: SLANTED,
-  Front: [0, -1, 0],
-  Back: [0, 1, 0],
-  Left: [-1, 0, 0],
-  Right: [1, 0, 0],
-  Top: [0, -1e-4, 1],
-  Bottom: [0, -1e-4, -1],
-};
 // Room beside the body for what is written there, in px.
 const ROOM = { left: 12, right: 136, top: 34, bottom: 52 },
   ROOM_OF_BAR = 34;
-const TURN = 0.1,
-  TICK_MS = 400;
+const TICK_MS = 400;
 const spoken = (value) => String(Number(value.toPrecision(3)));
 
 export class View {
@@ -29,7 +18,6 @@ export class View {
     this.find = (selector) => box.querySelector(selector);
     this.canvas = this.find("canvas");
     this.bodies = new Bodies();
-    this.fitted = true; // as long as nobody has moved or zoomed
     this.sized = true;
     try {
       this.renderer = new THREE.WebGLRenderer({
@@ -42,15 +30,11 @@ export class View {
       this.find(".shown").textContent = "This browser cannot draw in 3D (no WebGL).";
       return;
     }
-    this.camera = new THREE.OrthographicCamera();
-    this.camera.up.set(0, 0, 1);
-    this.controls = new OrbitControls(this.camera, this.canvas);
-    this.controls.addEventListener("change", () => this.draw());
-    this.controls.addEventListener("start", () => this.find(".hover").replaceChildren());
-    this.looking(SLANTED);
+    this.camera = new Camera(this.canvas, () => this.draw());
+    this.camera.controls.addEventListener("start", () => this.find(".hover").replaceChildren());
     this.listen();
     this.wake(false);
-    new ResizeObserver(() => (this.fitted ? this.fit() : this.draw())).observe(this.canvas);
+    new ResizeObserver(() => (this.camera.isFitted ? this.fit() : this.draw())).observe(this.canvas);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
   }
 
@@ -70,7 +54,7 @@ export class View {
     this.find(".play").disabled = data.steps.length < 2;
     this.find(".section").disabled = data.slice;
     this.go(data.steps.length - 1);
-    if (this.fitted) this.fit();
+    if (this.camera.isFitted) this.fit();
   }
 
   toggle(name) {
@@ -107,12 +91,6 @@ export class View {
     this.draw();
   }
 
-  looking(direction) {
-    const away = new THREE.Vector3(...direction).normalize().multiplyScalar(this.away || 10);
-    this.camera.position.copy(this.controls.target).add(away);
-    this.controls.update();
-  }
-
   // All corners of what is shown, the dot above it included.
   corners() {
     const { low, high } = this.bodies,
@@ -127,34 +105,10 @@ export class View {
     );
   }
 
-  // The camera so near that all of it is seen, in the direction in which it looks.
   fit() {
-    const { camera, canvas } = this;
-    if (!this.data || !canvas.clientHeight) return;
-    const corners = this.corners(),
-      size = corners[0].distanceTo(corners[7]);
-    camera.updateMatrixWorld();
-    const turned = corners.map((one) => one.clone().applyQuaternion(camera.quaternion.clone().invert()));
-    const [low, high] = [Math.min, Math.max].map((end) =>
-      ["x", "y", "z"].map((name) => end(...turned.map((one) => one[name]))),
-    );
-    const wide = Math.max(60, canvas.clientWidth - ROOM.left - ROOM.right);
+    if (!this.data) return;
     const bottom = ROOM.bottom + (this.bodies.shown ? ROOM_OF_BAR : 0);
-    const tall = Math.max(60, canvas.clientHeight - ROOM.top - bottom);
-    const unit = Math.max((high[0] - low[0]) / wide, (high[1] - low[1]) / tall); // mm of a px
-    const middle = new THREE.Vector3(...low.map((one, i) => (one + high[i]) / 2));
-    middle.x += ((ROOM.right - ROOM.left) * unit) / 2;
-    middle.y += ((ROOM.top - bottom) * unit) / 2;
-    middle.applyQuaternion(camera.quaternion);
-    const away = camera.position.clone().sub(this.controls.target).normalize();
-    this.away = 3 * size;
-    this.half = (unit * canvas.clientHeight) / 2;
-    [camera.near, camera.far, camera.zoom] = [0.01 * size, 12 * size, 1];
-    this.centre = middle;
-    this.controls.target.copy(middle);
-    camera.position.copy(middle).addScaledVector(away, this.away);
-    this.controls.update();
-    this.fitted = true;
+    this.camera.fit(this.corners(), { ...ROOM, bottom });
     this.draw();
   }
 
@@ -168,39 +122,21 @@ export class View {
 
   render() {
     const { renderer, camera, canvas } = this,
-      [width, height] = [canvas.clientWidth, canvas.clientHeight];
-    if (!width || !height || !this.half) return;
+      width = canvas.clientWidth,
+      height = canvas.clientHeight;
+    if (!width || !height || !camera.half) return;
     renderer.setPixelRatio(window.devicePixelRatio || 1);
     renderer.setSize(width, height, false);
-    const half = this.half,
-      aspect = width / height;
-    [camera.left, camera.right, camera.top, camera.bottom] = [-half * aspect, half * aspect, half, -half];
-    camera.updateProjectionMatrix();
-    renderer.render(this.bodies.scene, camera);
-    this.mark(width, height);
-  }
-
-  mark(width, height) {
-    const { camera, bodies } = this;
-    const project = (point) => {
-      const at = new THREE.Vector3(...point).project(camera);
-      return [((at.x + 1) / 2) * width, ((1 - at.y) / 2) * height];
-    };
-    this.project = project;
-    const back = camera.quaternion.clone().invert();
-    const turn = (one) => {
-      const at = new THREE.Vector3(...one).applyQuaternion(back);
-      return [at.x, at.y];
-    };
+    camera.frame(width, height);
+    renderer.render(this.bodies.scene, camera.lens);
+    this.project = camera.projection(width, height);
+    const { low, high } = this.bodies,
+      about = { low, high, width, height, withDimensions: this.sized };
     drawMarks(this.find("svg.marks"), {
-      low: bodies.low,
-      high: bodies.high,
-      project,
-      turn,
-      width,
-      height,
-      pixels: (height * camera.zoom) / (2 * this.half),
-      withDimensions: this.sized,
+      ...about,
+      project: this.project,
+      turn: camera.turning(),
+      pixels: camera.scale(height),
     });
     this.handle();
   }
@@ -227,7 +163,7 @@ export class View {
   // The wheel turns the page until the view has been clicked.
   wake(on) {
     this.awake = on;
-    this.controls.enableZoom = on;
+    this.camera.controls.enableZoom = on;
     this.canvas.style.touchAction = on ? "none" : "pan-y";
     if (on) this.find(".wheel").hidden = true;
   }
@@ -244,7 +180,7 @@ export class View {
       "wheel",
       () => {
         if (this.awake) {
-          this.fitted = false;
+          this.camera.isFitted = false;
           return;
         }
         find(".wheel").hidden = false;
@@ -258,9 +194,6 @@ export class View {
     canvas.addEventListener("keydown", (event) => this.key(event));
     canvas.addEventListener("pointermove", (event) => this.hover(event));
     canvas.addEventListener("pointerleave", () => find(".hover").replaceChildren());
-    this.controls.addEventListener("end", () => {
-      if (this.controls.target.distanceTo(this.centre || this.controls.target) > 0) this.fitted = false;
-    });
   }
 
   buttons() {
@@ -284,7 +217,7 @@ export class View {
             type: "button",
             title: `${name} (${number})`,
             onclick: () => {
-              this.looking(way);
+              this.camera.look(way);
               this.fit();
             },
           },
@@ -298,7 +231,7 @@ export class View {
     find(".colour").addEventListener("change", (event) => {
       bodies.field = event.target.value;
       if (this.data) this.go(bodies.step);
-      if (this.fitted) this.fit();
+      if (this.camera.isFitted) this.fit();
     });
     find(".section").addEventListener("change", (event) => {
       bodies.section.axis = event.target.value;
@@ -361,41 +294,20 @@ export class View {
 
   key(event) {
     if (event.ctrlKey || event.metaKey || event.altKey || !this.data) return;
-    const offset = this.camera.position.clone().sub(this.controls.target),
-      way = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
-    const named = Object.values(VIEWS)[Number(event.key)];
-    if (way && event.shiftKey) this.shift(...way);
-    else if (way) {
-      const flat = Math.hypot(offset.x, offset.y),
-        yaw = Math.atan2(offset.y, offset.x) - TURN * way[0];
-      const tilt = Math.max(-1.55, Math.min(1.55, Math.atan2(offset.z, flat) + TURN * way[1])),
-        away = offset.length();
-      offset
-        .set(Math.cos(yaw) * Math.cos(tilt), Math.sin(yaw) * Math.cos(tilt), Math.sin(tilt))
-        .multiplyScalar(away);
-      this.camera.position.copy(this.controls.target).add(offset);
-      this.controls.update();
-    } else if (event.key === "+" || event.key === "-") {
-      this.camera.zoom *= event.key === "+" ? 1.2 : 1 / 1.2;
-      this.fitted = false;
-      this.draw();
-    } else if (event.key.toLowerCase() === "f") this.fit();
+    const { camera } = this,
+      named = /^[0-6]$/.test(event.key) ? Object.values(VIEWS)[Number(event.key)] : null;
+    const way = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    if (way && event.shiftKey) camera.shift(...way);
+    else if (way) camera.turn(...way);
+    else if (event.key === "+" || event.key === "-") camera.zoom(event.key === "+" ? 1.2 : 1 / 1.2);
+    else if (event.key.toLowerCase() === "f") this.fit();
     else if (event.key === "Escape") this.wake(false);
-    else if (/^[0-6]$/.test(event.key) && named) {
-      this.looking(named);
+    else if (named) {
+      camera.look(named);
       this.fit();
     } else return;
+    this.draw();
     event.preventDefault();
-  }
-
-  shift(x, y) {
-    const right = new THREE.Vector3(1, 0, 0).applyQuaternion(this.camera.quaternion),
-      up = new THREE.Vector3(0, 1, 0).applyQuaternion(this.camera.quaternion);
-    const by = right.multiplyScalar(-0.1 * x * this.half).addScaledVector(up, 0.1 * y * this.half);
-    this.controls.target.add(by);
-    this.camera.position.add(by);
-    this.fitted = false;
-    this.controls.update();
   }
 
   // The name and value of what is under the mouse, once it rests for a frame.
@@ -404,30 +316,16 @@ export class View {
     this.asking = requestAnimationFrame(() => {
       this.asking = null;
       const box = this.canvas.getBoundingClientRect(),
-        ray = new THREE.Raycaster(),
-        place = this.find(".hover");
-      const [x, y] = [event.clientX - box.left, event.clientY - box.top];
-      ray.setFromCamera(new THREE.Vector2((2 * x) / box.width - 1, 1 - (2 * y) / box.height), this.camera);
-      const met = this.bodies.meets(ray),
+        place = this.find(".hover"),
         { shown } = this.bodies;
+      const x = event.clientX - box.left,
+        y = event.clientY - box.top;
+      const met = this.bodies.meets(this.camera.ray(x, y, box.width, box.height));
       const value =
-        met && met.value !== null && met.value !== undefined && shown
-          ? `: ${spoken(met.value)} ${shown.unit}`
-          : "";
+        met && shown && typeof met.value === "number" ? `: ${spoken(met.value)} ${shown.unit}` : "";
       place.textContent = met ? met.name + value : "";
       place.style.left = `${Math.min(x + 14, box.width - 120)}px`;
       place.style.top = `${y + 10}px`;
     });
-  }
-
-  // A small picture of what is shown, as the address of a JPEG; null where nothing is.
-  picture(width, height) {
-    if (!this.data || !this.half) return null;
-    this.render();
-    const made = element("canvas", { width, height }),
-      scale = Math.min(width / this.canvas.width, height / this.canvas.height);
-    const [w, h] = [this.canvas.width * scale, this.canvas.height * scale];
-    made.getContext("2d").drawImage(this.canvas, (width - w) / 2, (height - h) / 2, w, h);
-    return made.toDataURL("image/png");
   }
 }
