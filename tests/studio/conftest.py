@@ -94,7 +94,9 @@ class Tab:
         self.page.on("pageerror", lambda error: self.wrong.append(str(error)))
         self.page.on("console", self._hear)
         self.page.goto(address)
-        self.page.locator("#form .field").first.wait_for()
+        self.page.locator("#form .field").first.wait_for(state="attached")
+        if self.page.locator("#start").is_visible():  # a tab with the default design begins there
+            self.page.locator("#start .go").click()
 
     def _hear(self, said: Any) -> None:
         """An error; that a studio which has ended does not answer is none."""
@@ -108,6 +110,11 @@ class Tab:
     def says(self, selector: str, text: str, timeout_s: float = 20.0) -> None:
         """Wait until an element holds a text."""
         self.page.locator(selector).filter(has_text=text).first.wait_for(timeout=1e3 * timeout_s)
+
+    def write(self, text: str) -> None:
+        """Another design as TOML."""
+        self.page.get_by_role("tab", name="TOML").click()
+        self.page.locator("#text").fill(text)
 
     @property
     def text(self) -> str:

@@ -74,7 +74,7 @@ def test_a_press_is_cancelled_and_one_whose_process_is_killed_is_told(start_stud
         os.kill(one, signal.SIGKILL)
     tab.says("#press .doing", "the process of the press ended; the design is as it was")
     assert tab.text == SLOW_PRESS
-    tab.page.locator("#text").fill(QUICK)
+    tab.write(QUICK)
     tab.pressed()
     assert running.end() == 0
 
@@ -97,7 +97,7 @@ def test_a_closed_tab_ends_its_work_and_its_design_is_found_by_the_next_start(st
     tab.page.close()
     until(lambda: ticks_in_a_second(workers(running.process.pid)) < 10, 60.0)
     again = open_tab(running.address)
-    again.page.locator("#text").fill(QUICK)
+    again.write(QUICK)
     again.page.locator("#undo:enabled").wait_for()
     again.page.locator("#earlier").select_option(index=1)
     until(lambda: again.text == SLOW_PRESS)

@@ -65,3 +65,19 @@ export function download(content, name) {
   element("a", { href: made, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(made), 1000);
 }
+
+// A toolbar is one stop of the tab key; the arrow keys go along it (ARIA Authoring Practices, toolbar).
+export function roving(toolbar) {
+  const buttons = () => [...toolbar.querySelectorAll("button")].filter((one) => !one.disabled);
+  const settle = (at) => {
+    for (const one of toolbar.querySelectorAll("button")) one.tabIndex = one === at ? 0 : -1;
+  };
+  toolbar.addEventListener("focusin", (event) => settle(event.target));
+  toolbar.addEventListener("keydown", (event) => {
+    const way = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key], all = buttons();
+    if (!way) return;
+    all[(all.indexOf(document.activeElement) + way + all.length) % all.length].focus();
+    event.preventDefault();
+  });
+  settle(buttons()[0]);
+}

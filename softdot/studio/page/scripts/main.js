@@ -2,7 +2,7 @@
 import * as array from "./array.js";
 import { Curves } from "./curves.js";
 import { Designs } from "./designs.js";
-import { duration, element, find } from "./dom.js";
+import { duration, element, find, roving } from "./dom.js";
 import { Form } from "./form.js";
 import { filter, hints, tidy } from "./form_search.js";
 import { unpacked } from "./frames.js";
@@ -15,35 +15,17 @@ import { Editor, prepareTabs } from "./toml.js";
 import { View } from "./view.js";
 
 const key = new URLSearchParams(location.search).get("key") || "";
-const isCopy = sessionStorage.getItem("open") === "yes"; // a copy of a tab has its storage too
-const tab = {
-  name: sessionStorage.getItem("tab") || "",
-  form: null,
-  circuit: null,
-  isBuilt: false,
-  shown: null,
-  painted: {},
-  tries: 0,
-};
+const isCopy = sessionStorage.getItem("open") === "yes";  // a copy of a tab has its storage too
+const tab = { name: sessionStorage.getItem("tab") || "", form: null, circuit: null, isBuilt: false, shown: null, painted: {}, tries: 0 };
 const store = new Store(sessionStorage);
 const viewer = new View(find("#view3d"));
-const curves = new Curves(find("#curves"), (text) => {
-  find("#heard").textContent = text;
-});
+const curves = new Curves(find("#curves"), (text) => { find("#heard").textContent = text; });
 const designs = new Designs(ask, (list, runs) => curves.show(list, runs));
 const editor = new Editor(find("#text"), find("#toml .lines"));
 const start = new StartPage(find("#start"), ask);
 const tasks = new next.Tasks(ask, address);
-const RESULTS = {
-  influences: "Each number 10 % larger",
-  tolerances: "Each number at the end of its tolerance",
-};
-const MARKED = {
-  numbers: "#numbers",
-  curves: "#curves",
-  circuit: "#circuit .answer",
-  array: "#array figure",
-};
+const RESULTS = { influences: "Each number 10 % larger", tolerances: "Each number at the end of its tolerance" };
+const MARKED = { numbers: "#numbers", curves: "#curves", circuit: "#circuit .answer", array: "#array figure" };
 
 // Files have addresses of their own, which hold no key; a report is shown in a frame that leads nowhere else.
 function address(path) {
@@ -73,20 +55,15 @@ function isNew(name, now) {
 }
 
 function paintBody() {
-  const { state } = store,
-    body = store.bodyToShow(tab.shown);
+  const { state } = store, body = store.bodyToShow(tab.shown);
   if (!body || !body.view) return;
   if (isNew("body", body)) {
     viewer.show(body.view);
   }
   tab.shown = body;
-  const isPress = body.tell === "view",
-    current = store.isCurrent(body.tell);
-  let words = isPress
-    ? `The ${body.quality === "array" ? "coarse" : body.quality} press. Move the step, or play it.`
-    : "The parts at rest, as they would be made; the press follows when your hand rests.";
-  if (!current)
-    words = state.design.mistakes.length ? "The last design without a mistake." : store.before(body.tell);
+  const isPress = body.tell === "view", current = store.isCurrent(body.tell);
+  let words = isPress ? `The ${body.quality === "array" ? "coarse" : body.quality} press. Move the step, or play it.` : "The parts at rest, as they would be made; the press follows when your hand rests.";
+  if (!current) words = state.design.mistakes.length ? "The last design without a mistake." : store.before(body.tell);
   find("#view3d .shown").textContent = words;
   find("#view3d canvas").classList.toggle("stale", !current);
 }
@@ -112,11 +89,9 @@ function paintForm({ design }) {
   tab.isBuilt = true;
   find("#form").replaceChildren(...tab.form.whole());
   filter(find("#form"), find("#find").value); // typed before there was a form
-  find("#circuit .fields").replaceChildren(
-    tab.circuit.table(store.form.schema.properties.readout, ["readout"]),
-  );
+  find("#circuit .fields").replaceChildren(tab.circuit.table(store.form.schema.properties.readout, ["readout"]));
   find("#circuit .fields details").open = true;
-  hints(find("#form"), find("#hint"));
+  return hints(find("#form"), find("#hint"));
 }
 
 function paintDesign({ design }) {
@@ -135,8 +110,7 @@ function paintDesign({ design }) {
 // Warnings that only a press tells, of this design.
 function late() {
   const { curves: pressed, array: cells } = store.contents;
-  if (store.isCurrent("array") && cells)
-    return cells.pressed.warnings.map((text) => ({ text, remedy: null }));
+  if (store.isCurrent("array") && cells) return cells.pressed.warnings.map((text) => ({ text, remedy: null }));
   if (!store.isCurrent("numbers") || !pressed) return [];
   const { warnings = [], remedies = [] } = pressed.curves[pressed.curves.length - 1].numbers;
   return warnings.map((text, i) => ({ text, remedy: remedies[i] }));
@@ -154,10 +128,7 @@ function paintContents() {
   if (isNew("kept", kept) && kept) designs.hear(kept);
   for (const [name, title] of Object.entries(RESULTS)) {
     const found = store.contents[name];
-    if (isNew(name, found) && found) {
-      next.influences(found.result, title);
-      tab.influences = name;
-    }
+    if (isNew(name, found) && found) { next.influences(found.result, title); tab.influences = name; }
   }
   if (isNew("recording", read)) {
     designs.record(read ? read.result.runs : []);
@@ -171,13 +142,11 @@ function paintContents() {
 // Long work: each as far as the program says it is.
 function paintTasks({ tasks: known, artefacts }) {
   for (const [task, { is, progress, said, took_s: took }] of Object.entries(known)) {
-    const name = task === "diagnosis" ? "verdict" : task,
-      made = store.contents[name];
+    const name = task === "diagnosis" ? "verdict" : task, made = store.contents[name];
     if (isNew(`result of ${task}`, made) && made) tasks.done({ task, result: made.result });
     if (isNew(`state of ${task}`, JSON.stringify(known[task]))) {
       if (is === "running") tasks.progress({ task, ...progress });
-      else
-        tasks.ended({ task, said: is === "done" ? `done in ${duration(took)}` : said, bad: is === "failed" });
+      else tasks.ended({ task, said: is === "done" ? `done in ${duration(took)}` : said, bad: is === "failed" });
     }
     tasks.item(task).querySelector(".old").hidden = !artefacts[name] || artefacts[name].current;
   }
@@ -187,35 +156,18 @@ function paintTasks({ tasks: known, artefacts }) {
 function paintMarks({ artefacts }) {
   const isOld = (name) => Boolean(artefacts[name] && !artefacts[name].current);
   find("#before").hidden = !isOld("numbers");
-  find("#before").textContent =
-    `The numbers and curves are still those of a design before: ${artefacts.numbers ? artefacts.numbers.what : ""}.`;
+  find("#before").textContent = `The numbers and curves are still those of a design before: ${artefacts.numbers ? artefacts.numbers.what : ""}.`;
   for (const [name, place] of Object.entries(MARKED)) find(place).classList.toggle("stale", isOld(name));
-  const name = tab.influences,
-    place = find("#influences"),
-    old = name && isOld(name);
+  const name = tab.influences, place = find("#influences"), old = name && isOld(name);
   place.classList.toggle("stale", Boolean(old));
   if (!isNew("mark of influences", old ? store.before(name) : "") && place.querySelector(".before")) return;
   for (const mark of place.querySelectorAll(".before")) mark.remove();
-  if (old)
-    place.prepend(
-      element(
-        "p",
-        { class: "before" },
-        `${store.before(name)} `,
-        element(
-          "button",
-          { type: "button", onclick: () => ask({ do: "start", task: name }) },
-          "Make it anew",
-        ),
-      ),
-    );
+  if (old) place.prepend(element("p", { class: "before" }, `${store.before(name)} `, element("button", { type: "button", onclick: () => ask({ do: "start", task: name }) }, "Make it anew")));
 }
 
 function paintLink() {
   const { state, link } = store;
-  const kept = store.unsent.length
-    ? "your last change is kept in this page and is sent when it answers"
-    : "nothing can be changed until it does";
+  const kept = store.unsent.length ? "your last change is kept in this page and is sent when it answers" : "nothing can be changed until it does";
   const words = {
     starting: "starting…",
     open: state && state.saved !== true ? state.saved : "on this machine only; every change is saved",
@@ -223,12 +175,8 @@ function paintLink() {
     ended: `softdot studio has ended; start it again on the same port, then load this page. ${store.unsent.length ? "Your last change is kept in this page." : ""}`,
     elsewhere: "this design is open in another tab, where it goes on",
   };
-  find("#link").textContent =
-    words[link] + (link === "open" && state && state.machine ? ` – ${state.machine}` : "");
-  find("#link").classList.toggle(
-    "bad",
-    (link !== "open" && link !== "starting") || Boolean(state && state.saved !== true),
-  );
+  find("#link").textContent = words[link] + (link === "open" && state && state.machine ? ` – ${state.machine}` : "");
+  find("#link").classList.toggle("bad", link !== "open" && link !== "starting" || Boolean(state && state.saved !== true));
   find("#design").inert = ["lost", "ended", "elsewhere"].includes(link);
 }
 
@@ -252,9 +200,7 @@ function hear(told) {
   } else if (told.tell === "elsewhere") store.link = "elsewhere";
   else if (told.tell === "said") say(told.text, told.bad);
   else if (told.tell === "form") {
-    find("#plate select").replaceChildren(
-      ...told.standards.map((one) => element("option", { value: one.name }, one.name)),
-    );
+    find("#plate select").replaceChildren(...told.standards.map((one) => element("option", { value: one.name }, one.name)));
     find("#plate select").value = "marburg-medium";
     tab.painted.check = undefined;
     start.hearForm(told);
@@ -291,99 +237,51 @@ window.addEventListener("pagehide", () => sessionStorage.removeItem("open"));
 function typing() {
   const text = find("#text");
   let later = null;
-  const send = () => {
-    delete text.dataset.dirty;
-    if (store.state && text.value !== store.state.design.text) ask({ do: "text", text: text.value });
-  };
-  text.addEventListener("input", () => {
-    text.dataset.dirty = "yes";
-    clearTimeout(later);
-    later = setTimeout(send, 500);
-  });
+  const send = () => { delete text.dataset.dirty; if (store.state && text.value !== store.state.design.text) ask({ do: "text", text: text.value }); };
+  text.addEventListener("input", () => { text.dataset.dirty = "yes"; clearTimeout(later); later = setTimeout(send, 500); });
   text.addEventListener("change", send);
 }
 
 function files() {
   const input = find("#import-file");
   const open = async (file) => {
-    if (file.size > 200000)
-      return say(
-        `'${file.name}' has ${(file.size / 1e6).toFixed(1)} MB: a design is a small TOML file.`,
-        true,
-      );
+    if (file.size > 200000) return say(`'${file.name}' has ${(file.size / 1e6).toFixed(1)} MB: a design is a small TOML file.`, true);
     return ask({ do: "text", text: await file.text() });
   };
   find("#import").addEventListener("click", () => input.click());
-  input.addEventListener("change", () => {
-    if (input.files[0]) open(input.files[0]);
-    input.value = "";
-  });
+  input.addEventListener("change", () => { if (input.files[0]) open(input.files[0]); input.value = ""; });
   find("#export").addEventListener("click", () => {
-    const made = URL.createObjectURL(
-      new Blob([store.state ? store.state.design.text : ""], { type: "application/toml" }),
-    );
+    const made = URL.createObjectURL(new Blob([store.state ? store.state.design.text : ""], { type: "application/toml" }));
     element("a", { href: made, download: "design.toml" }).click();
     setTimeout(() => URL.revokeObjectURL(made), 1000);
   });
   const design = find("#design");
   design.addEventListener("dragover", (event) => event.preventDefault());
-  design.addEventListener("drop", (event) => {
-    event.preventDefault();
-    if (event.dataTransfer.files[0]) open(event.dataTransfer.files[0]);
-  });
+  design.addEventListener("drop", (event) => { event.preventDefault(); if (event.dataTransfer.files[0]) open(event.dataTransfer.files[0]); });
 }
 
 function buttons() {
-  for (const name of ["undo", "redo", "reset"])
-    find(`#${name}`).addEventListener("click", () => ask({ do: name }));
+  for (const name of ["undo", "redo", "reset"]) find(`#${name}`).addEventListener("click", () => ask({ do: name }));
   // What is being typed has an undo of its own; once it is sent, undo is that of the design.
   const typed = new WeakSet();
   document.addEventListener("input", (event) => typed.add(event.target), true);
   document.addEventListener("change", (event) => typed.delete(event.target), true);
   document.addEventListener("keydown", (event) => {
-    if (!(event.ctrlKey || event.metaKey) || typed.has(event.target) || event.target.matches("textarea"))
-      return;
-    const name =
-      event.key.toLowerCase() === "z"
-        ? event.shiftKey
-          ? "redo"
-          : "undo"
-        : event.key === "y"
-          ? "redo"
-          : null;
-    if (name) {
-      event.preventDefault();
-      ask({ do: name });
-    }
+    if (!(event.ctrlKey || event.metaKey) || typed.has(event.target) || event.target.matches("textarea")) return;
+    const name = event.key.toLowerCase() === "z" ? (event.shiftKey ? "redo" : "undo") : event.key === "y" ? "redo" : null;
+    if (name) { event.preventDefault(); ask({ do: name }); }
   });
   find("#press .cancel").addEventListener("click", () => ask({ do: "cancel", task: "press" }));
-  find("#press .again").addEventListener("click", () => {
-    ask({ do: "press" });
-  });
-  for (const one of document.querySelectorAll("[data-start]"))
-    one.addEventListener("click", () => ask({ do: "start", task: one.dataset.start }));
-  find("#plate button").addEventListener("click", () =>
-    ask({
-      do: "start",
-      task: "plate",
-      kind: "text",
-      text: find("#plate input").value,
-      standard: find("#plate select").value,
-    }),
-  );
-  find("#keep").addEventListener("submit", (event) => {
-    event.preventDefault();
-    ask({ do: "keep", name: find("#keep input").value });
-    find("#keep input").value = "";
-  });
+  find("#press .again").addEventListener("click", () => { ask({ do: "press" }); });
+  for (const one of document.querySelectorAll("[data-start]")) one.addEventListener("click", () => ask({ do: "start", task: one.dataset.start }));
+  find("#plate button").addEventListener("click", () => ask({ do: "start", task: "plate", kind: "text", text: find("#plate input").value, standard: find("#plate select").value }));
+  find("#keep").addEventListener("submit", (event) => { event.preventDefault(); ask({ do: "keep", name: find("#keep input").value }); find("#keep input").value = ""; });
   find("#every").addEventListener("change", (event) => {
     find("#form").classList.toggle("every", event.target.checked);
     tidy(find("#form"));
   });
   find("#begin").addEventListener("click", () => start.open());
-  find("#said button").addEventListener("click", () => {
-    find("#said").hidden = true;
-  });
+  find("#said button").addEventListener("click", () => { find("#said").hidden = true; });
   find("#find").addEventListener("input", (event) => filter(find("#form"), event.target.value));
   find("#form").addEventListener("submit", (event) => event.preventDefault());
 }
@@ -391,6 +289,7 @@ function buttons() {
 window.addEventListener("dragover", (event) => event.preventDefault());
 window.addEventListener("drop", (event) => event.preventDefault());
 prepareTabs();
+roving(find("header .tools"));
 typing();
 files();
 buttons();

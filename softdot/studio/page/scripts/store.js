@@ -6,8 +6,7 @@
 // link: "starting", "open", "lost" or "ended".
 
 const CHANGES = new Set(["set", "change", "text"]);
-const same = (one, other) =>
-  one.do === "set" && other.do === "set" && JSON.stringify(one.key) === JSON.stringify(other.key);
+const same = (one, other) => one.do === "set" && other.do === "set" && JSON.stringify(one.key) === JSON.stringify(other.key);
 
 export class Store {
   // storage: as sessionStorage; what is not sent yet is kept there and outlives a reload.
@@ -73,10 +72,7 @@ export class Store {
     this.storage.setItem("number", String(this.number));
     if (CHANGES.has(message.do)) {
       const last = this.unsent[this.unsent.length - 1];
-      this.keep([
-        ...(last && !this.send && same(last, message) ? this.unsent.slice(0, -1) : this.unsent),
-        numbered,
-      ]);
+      this.keep([...(last && !this.send && same(last, message) ? this.unsent.slice(0, -1) : this.unsent), numbered]);
     }
     if (!this.send || this.isFresh) return false;
     this.send(JSON.stringify(numbered));

@@ -2,7 +2,7 @@
 import * as THREE from "./three.module.min.js";
 import { Bodies } from "./bodies.js";
 import { Camera, VIEWS } from "./camera.js";
-import { element } from "./dom.js";
+import { element, roving } from "./dom.js";
 import { colourBar, drawMarks, legend } from "./marks.js";
 
 // Room beside the body for what is written there, in px.
@@ -226,6 +226,7 @@ export class View {
       ),
       sizes,
     );
+    roving(find(".views"));
     find(".step").addEventListener("input", (event) => this.data && this.go(Number(event.target.value)));
     find(".play").addEventListener("click", () => this.play());
     find(".colour").addEventListener("change", (event) => {
