@@ -37,6 +37,7 @@ class DesignState:
         self._last_check: tuple[int, Json] = (0, {})
         self._presses: OrderedDict[str, KnownPress] = OrderedDict()
         self._made: dict[str, Artefact] = {}
+        self._drawn: str | None = None
         self._undrawn: str | None = None
         self._stop: Stop | None = None
         self._job: Origin | None = None
@@ -92,8 +93,7 @@ class DesignState:
     @property
     def wants_parts(self) -> bool:
         """Whether its parts are to be drawn."""
-        parts = self._made.get("parts")
-        return self._undrawn != self.text and (parts is None or parts.origin.text != self.text)
+        return self.text not in (self._drawn, self._undrawn)
 
     @property
     def wants_check(self) -> bool:
@@ -131,10 +131,9 @@ class DesignState:
 
     def edited(self, circuit_alone: bool = False) -> None:
         """The text is another one. circuit_alone : but for the amplifier the design is the same, so its parts are."""
-        parts, before = self._made.get("parts"), self._text_before
+        if circuit_alone and self._drawn == self._text_before:
+            self._drawn = self.text
         self.revision, self._text_before = self.revision + 1, self.text
-        if circuit_alone and parts is not None and parts.origin.text == before:
-            self._made["parts"] = replace(parts, origin=self.present)
         self._settle()
 
     def machine_says(self, of: str, said: str | None) -> None:
@@ -154,6 +153,7 @@ class DesignState:
     def drawn(self, origin: Origin, view: Json | None) -> None:
         """Parts at rest; None for a design that has none, or whose drawing failed."""
         if view is not None:
+            self._drawn = origin.text
             self.made("parts", origin, view)
         elif origin.text == self.text:
             self._undrawn = origin.text
@@ -251,8 +251,7 @@ class DesignState:
             return "checked"
         if self.present_estimate is not None:
             return "estimated"
-        parts = self._made.get("parts")
-        if parts is not None and parts.origin.text == self.text:
+        if self._drawn == self.text:
             return "drawn"
         return "edited" if self.check is None else "checked"
 
@@ -276,6 +275,8 @@ class DesignState:
         now, origin = self.present, made.origin
         if name in ("numbers", "curves", "view", "array"):
             return now.press_hash is not None and origin.press_hash == now.press_hash
+        if name == "parts":
+            return self._drawn == now.text
         if name == "circuit":
             press = self.press
             same = press is not None and made.content["history"] == press.found.get("history")
