@@ -13,6 +13,7 @@ from typing import Any
 from softdot.studio.comparison import design_words
 from softdot.studio.design_facts import Artefact, Json, KnownPress, Origin, Phase, Stop
 from softdot.studio.document import Document
+from softdot.studio.estimate import Estimator
 from softdot.studio.phase_words import phase_words
 
 MOST_PRESSES = 6
@@ -32,7 +33,7 @@ class DesignState:
         self.saved: str | None = None
         self.progress: Json | None = None
         self.tasks: dict[str, Json] = {}
-        self.estimate: Artefact | None = None
+        self.estimator = Estimator()
         self._checks: OrderedDict[str, Json] = OrderedDict()
         self._last_check: tuple[int, Json] = (0, {})
         self._presses: OrderedDict[str, KnownPress] = OrderedDict()
@@ -116,6 +117,13 @@ class DesignState:
         return made is None or made.origin.text != self.text or made.content["history"] != press.found["history"]
 
     @property
+    def wants_exponents(self) -> bool:
+        """Whether designs beside it are to be estimated from its press, which is done."""
+        press = self.press
+        done = press is not None and press.complete and press.answer is not None and self._job is None
+        return done and not self.estimator.knows(self.present.press_hash or "")
+
+    @property
     def presses_to_do(self) -> Sequence[str]:
         """Tasks of its press, without those that are done."""
         tasks: Sequence[str] = (self.check or {}).get("presses", ())
@@ -158,10 +166,6 @@ class DesignState:
         elif origin.text == self.text:
             self._undrawn = origin.text
 
-    def estimated(self, origin: Origin, found: Json | None) -> None:
-        """Force, charge and voltage to first order; None where they cannot be estimated."""
-        self.estimate = None if found is None else Artefact(origin, found, self._next())
-
     def press_begins(self) -> Origin:
         """The press of the present design is under way."""
         self._job, self._stop, self.progress = self.present, None, None
@@ -181,6 +185,9 @@ class DesignState:
             found = {**found, "view": before.found.get("view")}
         quality = "array" if "array" in found else found["quality"]
         self._presses[key] = KnownPress(job, label, quality, found, complete, self._next())
+        answer = self._presses[key].answer
+        if complete and answer is not None:
+            self.estimator.learn(key, job.text, job.values or {}, answer)
         while len(self._presses) > MOST_PRESSES:
             self._presses.popitem(last=False)
         self._settle()
@@ -249,7 +256,7 @@ class DesignState:
             return "accurate" if press.quality == "accurate" else "coarse"
         if self.check is not None and self.present.press_hash is None:
             return "checked"
-        if self.present_estimate is not None:
+        if self.estimate is not None:
             return "estimated"
         if self._drawn == self.text:
             return "drawn"
@@ -305,10 +312,9 @@ class DesignState:
         return None if is_stale else made.content["found"]["readout_voltage_V"]
 
     @property
-    def present_estimate(self) -> Json | None:
-        """Force, charge and voltage of this design to first order."""
-        made = self.estimate
-        return made.content if made is not None and made.origin.text == self.text else None
+    def estimate(self) -> Json | None:
+        """Force, charge and voltage of this design to first order, until its press is there."""
+        return None if self.press is not None else self.estimator.estimate(self.text)
 
     @property
     def _pressing(self) -> Json | None:
@@ -344,7 +350,7 @@ class DesignState:
             "progress": self._pressing,
             "machine": "; ".join(dict.fromkeys(self._machine.values())) or None,
             "saved": True if self.saved is None else self.saved,
-            "estimate": self.present_estimate,
+            "estimate": self.estimate,
             "artefacts": {
                 name: {
                     "revision": made.origin.revision,

@@ -125,7 +125,10 @@ class AssetHandler(Guarded):
 class FileHandler(Guarded):
     """What a task has made, under a random address that only its tab was told, and that is no key to anything else."""
 
-    needs_key = False
+    def prepare(self) -> None:
+        """Whoever does not know an address needs the key to be told that there is nothing."""
+        self.needs_key = not any(self.path_args[0] in one.files for one in self.tabs.sessions.values())
+        super().prepare()
 
     def path(self, token: str) -> Path:
         """The file of an address. HTTPError 404."""

@@ -1,6 +1,7 @@
 """Whatever happens in whatever order, the page is told nothing of a design that is not so of exactly this design."""
 
 import hypothesis.strategies as st
+import pytest
 from hypothesis import settings
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 
@@ -24,7 +25,7 @@ def parsed(text):
 
 def true_check(text):
     thickness, resistance = parsed(text)
-    values = {"segment": {"thickness_mm": thickness}, "readout": {"resistance": resistance}}
+    values = {"thickness": thickness, "resistance": resistance}
     if thickness < 0:
         return {"values": values, "stated": values, "mistakes": ["below 0"], "warnings": [], "remedies": [None]}
     pressed = f"hash of {thickness}" if thickness > 0 else None
@@ -34,7 +35,8 @@ def true_check(text):
 
 def true_press(text, quality):
     thickness, _ = parsed(text)
-    numbers = {"voltage": 10 * thickness, "solver": {"converged": True}}
+    answer = {"reaction_force_N": [thickness], "film_charge_pC": [thickness], "open_circuit_voltage_V": [thickness**2]}
+    numbers = {"voltage": 10 * thickness, "solver": {"converged": True}, **answer}
     view = f"pressed {thickness} {quality}"
     return {"quality": quality, "numbers": numbers, "view": view, "history": f"{thickness} {quality}".encode()}
 
@@ -166,6 +168,11 @@ class Studied(RuleBasedStateMachine):
                 self.state.press_ends(job)
         self.jobs = [one for one in self.jobs if one[1]]
 
+    @precondition(lambda self: self.state.wants_exponents)
+    @rule()
+    def exponents_are_known(self):
+        self.state.estimator.add_exponents(self.state.present.press_hash, {"thickness": (1.0, 1.0, 2.0)})
+
     @rule()
     def ask_for_a_kit(self):
         self.kits.append(self.state.present)
@@ -217,6 +224,11 @@ class Studied(RuleBasedStateMachine):
             assert {"numbers", "curves", "view"} <= current
             assert self.page.contents["curves"]["curves"][-1]["quality"] == phase
             assert self.page.contents["view"]["quality"] == phase
+        if told["estimate"] is not None:
+            thickness = parsed(self.state.text)[0]
+            assert phase not in ("coarse", "accurate")
+            assert told["estimate"]["voltage_V"]["value"] == pytest.approx(thickness**2)
+        assert (phase == "estimated") <= (told["estimate"] is not None)
         if phase == "drawn":
             assert "parts" in current
         if phase == "checked" and not told["busy"]:
