@@ -92,7 +92,7 @@ class Estimator:
 
 
 def _shifts(basis: Basis, stated: Mapping[str, Any]) -> dict[str, float] | None:
-    """Dotted key -> ln(x / x0) of all numbers that differ; None where anything else differs, or an exponent is missing."""
+    """Dotted key -> ln(x / x0) of all numbers that differ; None where more differs, or an exponent is missing."""
     shifts: dict[str, float] = {}
     for key in basis.stated.keys() | stated.keys():
         if key.split(".", 1)[0] in WITHOUT_EFFECT or basis.stated.get(key) == stated.get(key):
