@@ -69,7 +69,7 @@ class WorkerProcess:
         sweep_scratch()
 
     def interrupt(self) -> bool:
-        """Raise KeyboardInterrupt in the call that it does; whether this platform can."""
+        """Send SIGINT, on which a call may stop if it listens to it; whether this platform can."""
         if os.name != "posix" or not self.is_alive:
             return False
         self._process.send_signal(signal.SIGINT)

@@ -5,6 +5,7 @@ from typing import Any, Literal
 
 Json = dict[str, Any]
 Phase = Literal["edited", "checked", "drawn", "estimated", "coarse", "accurate", "failed", "cancelled"]
+ANSWER = "reaction_force_N", "film_charge_pC", "open_circuit_voltage_V"
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,15 @@ class KnownPress:
             return failure
         solver = self.found["numbers"]["solver"]
         return None if solver["converged"] else str(solver["failure"])
+
+    @property
+    def answer(self) -> tuple[float, float, float] | None:
+        """Force (N), charge (pC) and voltage (V) at full load of an accurate press; None where that was not reached."""
+        if self.quality != "accurate" or self.failure is not None:
+            return None
+        numbers = self.found["numbers"]
+        force, charge, voltage = (numbers[name][-1] for name in ANSWER)
+        return force, charge, voltage
 
 
 @dataclass(frozen=True)

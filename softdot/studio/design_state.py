@@ -13,6 +13,7 @@ from typing import Any
 from softdot.studio.comparison import design_words
 from softdot.studio.design_facts import Artefact, Json, KnownPress, Origin, Phase, Stop
 from softdot.studio.document import Document
+from softdot.studio.estimate import Estimator
 from softdot.studio.phase_words import phase_words
 
 MOST_PRESSES = 6
@@ -32,11 +33,12 @@ class DesignState:
         self.saved: str | None = None
         self.progress: Json | None = None
         self.tasks: dict[str, Json] = {}
-        self.estimate: Artefact | None = None
+        self.estimator = Estimator()
         self._checks: OrderedDict[str, Json] = OrderedDict()
         self._last_check: tuple[int, Json] = (0, {})
         self._presses: OrderedDict[str, KnownPress] = OrderedDict()
         self._made: dict[str, Artefact] = {}
+        self._drawn: str | None = None
         self._undrawn: str | None = None
         self._stop: Stop | None = None
         self._job: Origin | None = None
@@ -92,8 +94,7 @@ class DesignState:
     @property
     def wants_parts(self) -> bool:
         """Whether its parts are to be drawn."""
-        parts = self._made.get("parts")
-        return self._undrawn != self.text and (parts is None or parts.origin.text != self.text)
+        return self.text not in (self._drawn, self._undrawn)
 
     @property
     def wants_check(self) -> bool:
@@ -116,6 +117,13 @@ class DesignState:
         return made is None or made.origin.text != self.text or made.content["history"] != press.found["history"]
 
     @property
+    def wants_exponents(self) -> bool:
+        """Whether designs beside it are to be estimated from its press, which is done."""
+        press = self.press
+        done = press is not None and press.complete and press.answer is not None and self._job is None
+        return done and not self.estimator.knows(self.present.press_hash or "")
+
+    @property
     def presses_to_do(self) -> Sequence[str]:
         """Tasks of its press, without those that are done."""
         tasks: Sequence[str] = (self.check or {}).get("presses", ())
@@ -131,10 +139,9 @@ class DesignState:
 
     def edited(self, circuit_alone: bool = False) -> None:
         """The text is another one. circuit_alone : but for the amplifier the design is the same, so its parts are."""
-        parts, before = self._made.get("parts"), self._text_before
+        if circuit_alone and self._drawn == self._text_before:
+            self._drawn = self.text
         self.revision, self._text_before = self.revision + 1, self.text
-        if circuit_alone and parts is not None and parts.origin.text == before:
-            self._made["parts"] = replace(parts, origin=self.present)
         self._settle()
 
     def machine_says(self, of: str, said: str | None) -> None:
@@ -154,13 +161,10 @@ class DesignState:
     def drawn(self, origin: Origin, view: Json | None) -> None:
         """Parts at rest; None for a design that has none, or whose drawing failed."""
         if view is not None:
+            self._drawn = origin.text
             self.made("parts", origin, view)
         elif origin.text == self.text:
             self._undrawn = origin.text
-
-    def estimated(self, origin: Origin, found: Json | None) -> None:
-        """Force, charge and voltage to first order; None where they cannot be estimated."""
-        self.estimate = None if found is None else Artefact(origin, found, self._next())
 
     def press_begins(self) -> Origin:
         """The press of the present design is under way."""
@@ -181,6 +185,9 @@ class DesignState:
             found = {**found, "view": before.found.get("view")}
         quality = "array" if "array" in found else found["quality"]
         self._presses[key] = KnownPress(job, label, quality, found, complete, self._next())
+        answer = self._presses[key].answer
+        if complete and answer is not None:
+            self.estimator.learn(key, job.text, job.values or {}, answer)
         while len(self._presses) > MOST_PRESSES:
             self._presses.popitem(last=False)
         self._settle()
@@ -249,10 +256,9 @@ class DesignState:
             return "accurate" if press.quality == "accurate" else "coarse"
         if self.check is not None and self.present.press_hash is None:
             return "checked"
-        if self.present_estimate is not None:
+        if self.estimate is not None:
             return "estimated"
-        parts = self._made.get("parts")
-        if parts is not None and parts.origin.text == self.text:
+        if self._drawn == self.text:
             return "drawn"
         return "edited" if self.check is None else "checked"
 
@@ -276,6 +282,8 @@ class DesignState:
         now, origin = self.present, made.origin
         if name in ("numbers", "curves", "view", "array"):
             return now.press_hash is not None and origin.press_hash == now.press_hash
+        if name == "parts":
+            return self._drawn == now.text
         if name == "circuit":
             press = self.press
             same = press is not None and made.content["history"] == press.found.get("history")
@@ -304,10 +312,9 @@ class DesignState:
         return None if is_stale else made.content["found"]["readout_voltage_V"]
 
     @property
-    def present_estimate(self) -> Json | None:
-        """Force, charge and voltage of this design to first order."""
-        made = self.estimate
-        return made.content if made is not None and made.origin.text == self.text else None
+    def estimate(self) -> Json | None:
+        """Force, charge and voltage of this design to first order, until its press is there."""
+        return None if self.press is not None else self.estimator.estimate(self.text)
 
     @property
     def _pressing(self) -> Json | None:
@@ -343,7 +350,7 @@ class DesignState:
             "progress": self._pressing,
             "machine": "; ".join(dict.fromkeys(self._machine.values())) or None,
             "saved": True if self.saved is None else self.saved,
-            "estimate": self.present_estimate,
+            "estimate": self.estimate,
             "artefacts": {
                 name: {
                     "revision": made.origin.revision,

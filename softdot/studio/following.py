@@ -14,6 +14,7 @@ from softdot.studio.processes import InTurn, MachineError, Pool, TaskRefused
 
 PAUSE_S, REST_S = 0.15, 0.2
 """A hand that has changed nothing for so long pauses, and the design is checked; then it rests, and it is pressed."""
+MOST_MOVED = 8
 LOADING = {
     "parts": "the process that draws is being loaded on this machine",
     "check": "the process that checks designs is being loaded on this machine",
@@ -32,12 +33,17 @@ class Studio:
 
 
 class Follower:
-    """Does what the state of a design wants. changed : called after every fact that it has brought into the state."""
+    """Does what the state of a design wants. changed : called after every fact that it has brought into the state.
+
+    moved : dotted keys that the hand has moved, the last one first.
+    """
 
     def __init__(self, state: DesignState, studio: Studio, changed: Callable[[], None]) -> None:
         self._state, self._studio, self._changed = state, studio, changed
         self._undrawn, self._unchecked, self._circuit_first = asyncio.Event(), asyncio.Event(), False
+        self.moved: list[str] = []
         self._press_task: asyncio.Task[None] | None = None
+        self._slopes_task: asyncio.Task[None] | None = None
         self._tasks = {asyncio.create_task(self._draw()), asyncio.create_task(self._check())}
 
     def touch(self, circuit_first: bool = False) -> None:
@@ -45,6 +51,10 @@ class Follower:
         self._circuit_first = circuit_first
         self._undrawn.set()
         self._unchecked.set()
+
+    def has_moved(self, key: str) -> None:
+        """A hand has moved this number."""
+        self.moved = [key, *(one for one in self.moved if one != key)][:MOST_MOVED]
 
     def press_again(self) -> None:
         """Also where the present design is pressed already, or its press was cancelled."""
@@ -63,8 +73,9 @@ class Follower:
 
     def close(self) -> None:
         """End everything."""
-        for task in self._tasks:
-            task.cancel()
+        for task in (*self._tasks, self._slopes_task):
+            if task is not None:
+                task.cancel()
         self.cancel_press(None)
 
     async def _draw(self) -> None:
@@ -148,6 +159,8 @@ class Follower:
     async def _press(self) -> None:
         """Coarse, then accurate; each is shown as soon as it is there."""
         state = self._state
+        if self._slopes_task is not None:
+            self._slopes_task.cancel()
         job = state.press_begins()
         self._changed()
         try:
@@ -162,6 +175,19 @@ class Follower:
             state.press_ends(job, "failed", f"The press has no answer: {error}. The design is as it was.")
         finally:
             self._changed()
+        if state.wants_exponents:
+            self._slopes_task = asyncio.create_task(self._learn_exponents(state.present))
+
+    async def _learn_exponents(self, origin: Origin) -> None:
+        """From them designs beside a pressed one are estimated while a slider moves."""
+
+        def on_way(told: Json) -> None:
+            if "exponents" in told:
+                self._state.estimator.add_exponents(origin.press_hash or "", told["exponents"])
+                self._changed()
+
+        with suppress(TaskRefused, MachineError):  # where nothing can be estimated, a press tells
+            await self._studio.solve.run("press", "slopes:exponents", origin.text, self.moved, tell=on_way)
 
     async def _press_in_stages(self, job: Origin) -> None:
         state = self._state

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import re
 from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
@@ -12,6 +13,7 @@ from tornado.web import Application, HTTPError, RequestHandler, stream_request_b
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from foundation.errors import InputError
+from softdot.studio.connections import TRUSTED
 from softdot.studio.frames import packed
 from softdot.studio.guard import FRAME_POLICY, HEADERS, PAPER_POLICY
 from softdot.studio.processes import MachineError, TaskRefused
@@ -29,6 +31,7 @@ FRAME = """<!doctype html><html lang="en"><meta charset="utf-8"><title>{title}</
 <iframe sandbox="allow-scripts" src="{address}" title="{title}"></iframe>
 """
 LARGEST_MESSAGE = 1 << 20
+NONCE = re.compile(r"[\w-]{20,100}")
 
 
 class Guarded(RequestHandler):
@@ -49,9 +52,19 @@ class Guarded(RequestHandler):
     def prepare(self) -> None:
         """Before anything of the request is used."""
         key = self.get_query_argument("key", "") if self.needs_key else None
+        if key == "" and self.get_query_argument("question", ""):
+            key = self._proven_key()
         refused = self.tabs.guard.refusal(self.request.headers, key, self.needs_origin)
         if refused is not None:
             raise HTTPError(403, reason="Forbidden", log_message=refused)
+        if self.needs_key:
+            TRUSTED.add(getattr(self.request.connection, "stream", self))
+
+    def _proven_key(self) -> str:
+        """The key, where a tab that comes back has shown that it holds it."""
+        guard = self.tabs.guard
+        given = self.get_query_argument("question", ""), self.get_query_argument("proof", "")
+        return guard.key if guard.answered(*given) else ""
 
     def write_error(self, status_code: int, **kwargs: Any) -> None:
         """One sentence, no traceback."""
@@ -81,6 +94,20 @@ class PageHandler(Guarded):
         self.send_file(PAGE.joinpath("index.html").read_bytes(), "index.html")
 
 
+class GreetingHandler(Guarded):
+    """Shows a tab that comes back that this is the studio it knows. It tells nothing to others."""
+
+    needs_key = False
+
+    def get(self) -> None:
+        """Proof and question."""
+        nonce = self.get_query_argument("nonce", "")
+        if not NONCE.fullmatch(nonce):
+            raise HTTPError(400)
+        self.set_header("Content-Type", "application/json")
+        self.finish(json.dumps(self.tabs.guard.greeting(nonce)))
+
+
 class AssetHandler(Guarded):
     """Scripts and styles of the page: the same for everybody, so that they need no key."""
 
@@ -97,7 +124,10 @@ class AssetHandler(Guarded):
 class FileHandler(Guarded):
     """What a task has made, under a random address that only its tab was told, and that is no key to anything else."""
 
-    needs_key = False
+    def prepare(self) -> None:
+        """Whoever does not know an address needs the key to be told that there is nothing."""
+        self.needs_key = not any(self.path_args[0] in one.files for one in self.tabs.sessions.values())
+        super().prepare()
 
     def path(self, token: str) -> Path:
         """The file of an address. HTTPError 404."""
@@ -159,6 +189,8 @@ class UploadHandler(Guarded):
             await session.upload(lambda place: asyncio.to_thread(unpack, split(bytes(self._body)), place))
         except InputError as error:
             raise HTTPError(400, log_message=str(error).replace("%", "%%")) from None
+        except OSError as error:
+            raise HTTPError(400, log_message=f"the recording cannot be kept here ({error.strerror})") from None
         self.finish("")
 
 
@@ -177,18 +209,20 @@ class SocketHandler(Guarded, WebSocketHandler):
         tab = self.get_query_argument("tab", "") or None
         try:
             self.session = session = self.tabs.session(tab, self.get_query_argument("copy", "") == "1")
-        except InputError as error:
-            self._send({"tell": "said", "text": str(error), "bad": True})
+        except (InputError, OSError) as error:
+            said = str(error) if isinstance(error, InputError) else f"no folder can be made here ({error.strerror})"
+            self._send({"tell": "said", "text": said, "bad": True})
             self.close()
             return
         self._send({"tell": "tab", "name": session.name})
         session.attach(self._send)
+        self._form = asyncio.create_task(self._send_form(session))
+
+    async def _send_form(self, session: Session) -> None:
         try:
             self._send({"tell": "form", **await self.tabs.form()})
         except (MachineError, TaskRefused) as error:
-            self._send(
-                {"tell": "said", "text": f"the form could not be made: {error}; load the page again", "bad": True}
-            )
+            session.say(f"the form could not be made: {error}; load the page again")
 
     def on_message(self, message: str | bytes) -> None:
         """One request; of a tab that another one has followed, nothing."""
@@ -217,6 +251,7 @@ def application(tabs: Tabs) -> Application:
     return Application(
         [
             ("/", PageHandler, shared),
+            ("/greeting", GreetingHandler, shared),
             ("/socket", SocketHandler, shared),
             ("/upload", UploadHandler, shared),
             (r"/assets/([\w.-]+)", AssetHandler, shared),

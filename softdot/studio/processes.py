@@ -3,19 +3,19 @@
 A task is a function below softdot.studio.work with plain arguments, and tell where it takes long: called with how far
 it is. It is named ("press:coarse_press"), so that the process of the page loads no solver, and runs in a process of
 its own, so that the page answers meanwhile, a crash costs that task alone. A task that is cancelled is asked to
-stop, so that its process stays loaded; a library in the middle of a factorisation asks nobody, and is ended.
+stop at its next step, so that its process stays loaded; one that does not is ended with its process.
 """
 
 import asyncio
 import logging
-import os
 import signal
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from contextlib import suppress
+from functools import partial
 from importlib import import_module
 from inspect import signature
-from traceback import walk_tb
+from threading import Event
 from typing import Any
 
 from foundation.errors import InputError
@@ -210,7 +210,7 @@ class Pool:
 
 def load(warm_up: str) -> None:
     """In the process: load what its tasks need, and let tasks be asked to stop."""
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGINT, lambda *_: STOP.set())
     with without_garbage_collection(), suppress(Exception):
         named(warm_up)()
 
@@ -222,6 +222,23 @@ def named(task: str) -> Callable[..., Any]:
     return found
 
 
+STOP = Event()
+"""In the process: its task is to stop where it next tells how far it is, between two steps, so that nothing is left half
+done in a library.
+"""
+
+
+class StopTask(BaseException):
+    """A task has been asked to stop; no handler of errors on the way is meant."""
+
+
+def tell_unless_stopped(tell: Tell, value: Any) -> None:
+    """Tell how far a task is, or end it there. StopTask."""
+    if STOP.is_set():
+        raise StopTask
+    tell(value)
+
+
 def do_task(task: str, arguments: Sequence[Any], tell: Tell) -> Any:
     """In the process: do a task. TaskRefused with one sentence, and the traceback of a mistake of ours in the log."""
     from mesh.types import MeshingError
@@ -231,13 +248,12 @@ def do_task(task: str, arguments: Sequence[Any], tell: Tell) -> Any:
     from solve.solution.full_load import StoppedShortError
     from solve.solution.linear import LinearSolveError
 
+    STOP.clear()
     try:
         function = named(task)
-        told = {"tell": tell} if "tell" in signature(function).parameters else {}
+        told = {"tell": partial(tell_unless_stopped, tell)} if "tell" in signature(function).parameters else {}
         return function(*arguments, **told)
-    except KeyboardInterrupt as interrupted:
-        if is_importing(interrupted):  # half of a module may be loaded
-            os._exit(1)
+    except StopTask:
         raise TaskRefused("cancelled") from None
     except InputError as error:
         raise TaskRefused(str(error)) from None
@@ -250,8 +266,3 @@ def do_task(task: str, arguments: Sequence[Any], tell: Tell) -> Any:
         said = no_room_sentence(error)
         ours = f"this failed inside softdot ({type(error).__name__}): please report it"
         raise TaskRefused(said[0] if said else ours) from None
-
-
-def is_importing(error: BaseException) -> bool:
-    """Whether it was raised while a module was being loaded."""
-    return any("importlib" in frame.f_code.co_filename for frame, _ in walk_tb(error.__traceback__))

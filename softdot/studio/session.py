@@ -11,6 +11,7 @@ from typing import Any
 from foundation.errors import InputError
 from softdot.studio.design_facts import Json, Origin
 from softdot.studio.design_state import DesignState
+from softdot.studio.document import dotted_key
 from softdot.studio.following import Follower, Studio
 from softdot.studio.kept_designs import KeptDesigns
 from softdot.studio.large_messages import large_messages
@@ -113,6 +114,7 @@ class Session:
         if not 0 < len(key) <= 8 or any(type(part) not in (str, int) for part in key):
             raise InputError("there is no such key")
         self.state.document.set(key, value, joined)
+        self._follower.has_moved(dotted_key(key))
         self._edited(circuit_alone=key[0] == "readout")
 
     def do_change(self, changes: list[list[Any]]) -> None:

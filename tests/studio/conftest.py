@@ -109,7 +109,16 @@ class Tab:
 
     def says(self, selector: str, text: str, timeout_s: float = 20.0) -> None:
         """Wait until an element holds a text."""
-        self.page.locator(selector).filter(has_text=text).first.wait_for(timeout=1e3 * timeout_s)
+        place = self.page.locator(selector)
+        try:
+            place.filter(has_text=text).first.wait_for(timeout=1e3 * timeout_s)
+        except Exception as error:  # that of playwright, which need not be installed
+            raise AssertionError(f"{selector} says {place.all_inner_texts()}, and the head says {self.head}") from error
+
+    @property
+    def head(self) -> str:
+        """What stands above the page of link and machine."""
+        return self.page.locator("#link").inner_text()
 
     def write(self, text: str) -> None:
         """Another design as TOML."""

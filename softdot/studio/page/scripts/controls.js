@@ -1,5 +1,6 @@
 // One control for each kind of value: choice, switch, number with its slider, lists, text.
 import { element, short } from "./dom.js";
+import { numberOf } from "./numbers.js";
 
 const SLIDER_STEPS = 1000;
 const dotted = (path) =>
@@ -47,14 +48,6 @@ function scaled(found, value, whole) {
   const inner = bounded && found.exclusiveMinimum !== undefined ? a + (b - a) / SLIDER_STEPS : a;
   const place = (one) => (SLIDER_STEPS * (one - inner)) / (b - inner);
   return { low: a, high: b, value: (at) => rounded(inner + ((b - inner) * at) / SLIDER_STEPS), place };
-}
-
-// A number as people write it, with a decimal comma too; null for nothing, the text itself where it is none.
-export function numberOf(text) {
-  const trimmed = text.trim().replace("−", "-");
-  if (trimmed === "") return null;
-  const value = Number(/^[-+]?\d*,\d+$/.test(trimmed) ? trimmed.replace(",", ".") : trimmed);
-  return Number.isFinite(value) ? value : trimmed;
 }
 
 // form: has about, set(path, value, joined), ask; name: what a person calls the value. A control has parts (its

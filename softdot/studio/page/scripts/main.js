@@ -99,7 +99,8 @@ function paintDesign({ design }) {
   if (document.activeElement !== text || !text.dataset.dirty) text.value = design.text;
   editor.mark(design.mistakes);
   for (const name of ["undo", "redo", "reset"]) find(`#${name}`).disabled = !design[name];
-  if (!isNew("check", `${design.of} ${design.is_checked} ${JSON.stringify(late())}`)) return;
+  const isChecked = design.is_checked || !tab.isBuilt;  // before, its form is as the hand has left it
+  if (!isChecked || !isNew("check", `${design.of} ${JSON.stringify(late())}`)) return;
   paintForm(store.state);
   array.state(design);
   next.mistakes(design, ask);
@@ -208,9 +209,37 @@ function hear(told) {
   if (["state", "form", "elsewhere"].includes(told.tell)) paint();
 }
 
-function connect() {
-  const copy = isCopy && !tab.hasOpened ? "&copy=1" : "";
-  const socket = new WebSocket(`ws://${location.host}${address("/socket")}${copy}`);
+// The address of the socket. Where this tab comes back, another program may listen on the port by now: the program shows
+// that it holds the key, and so does the tab, and neither sends it. A page that is not local has no way to do so.
+async function socketAddress() {
+  const own = address("/socket") + (isCopy && !tab.hasOpened ? "&copy=1" : "");
+  if (!tab.hasOpened || !window.crypto.subtle) return own;
+  const bytes = (text) => new TextEncoder().encode(text), hex = (found) => [...new Uint8Array(found)].map((one) => one.toString(16).padStart(2, "0")).join("");
+  const secret = await crypto.subtle.importKey("raw", bytes(key), { name: "HMAC", hash: "SHA-256" }, false, ["sign"]);
+  const proof = async (text) => hex(await crypto.subtle.sign("HMAC", secret, bytes(text)));
+  const nonce = hex(crypto.getRandomValues(new Uint8Array(16)));
+  const greeting = await (await fetch(`/greeting?nonce=${nonce}`)).json();
+  if (greeting.proof !== await proof(`studio:${nonce}`)) throw new Error("another program answers");
+  const answer = await proof(`tab:${greeting.question}`);
+  return `/socket?tab=${encodeURIComponent(tab.name)}&question=${greeting.question}&proof=${answer}`;
+}
+
+function lost() {
+  if (store.link === "elsewhere") return;
+  tab.tries += 1;
+  store.closed(tab.tries >= 30);
+  paintLink();
+  setTimeout(connect, Math.min(500 * tab.tries, 5000));
+}
+
+async function connect() {
+  let socket;
+  try {
+    socket = new WebSocket(`ws://${location.host}${await socketAddress()}`);
+  } catch {
+    lost();
+    return;
+  }
   socket.binaryType = "arraybuffer";
   socket.addEventListener("open", () => {
     Object.assign(tab, { tries: 0, hasOpened: true });
@@ -223,13 +252,7 @@ function connect() {
     hear(told);
     document.dispatchEvent(new CustomEvent("softdot", { detail: told.tell }));
   });
-  socket.addEventListener("close", () => {
-    if (store.link === "elsewhere") return;
-    tab.tries += 1;
-    store.closed(tab.tries >= 30);
-    paintLink();
-    if (tab.tries < 30) setTimeout(connect, Math.min(500 * tab.tries, 5000));
-  });
+  socket.addEventListener("close", lost);
 }
 
 window.addEventListener("pagehide", () => sessionStorage.removeItem("open"));

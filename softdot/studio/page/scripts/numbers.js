@@ -64,3 +64,14 @@ export function quantity(value, unit, error = null, digits = 3) {
   const shown = coarse > 1 ? text : (one) => minus((one / size).toFixed(places));
   return `${shown(value)}\u2009±\u2009${shown(error)}\u00a0${name}`;
 }
+
+// What a text means: null where it is empty, a number, or the text itself, of which the program says what is wrong.
+export function numberOf(text) {
+  const plain = text
+    .trim()
+    .replace(/^[\u2212\u2013]/, "-")
+    .replace(/^([^.,]*),([^.,]*)$/, "$1.$2");
+  if (plain === "") return null;
+  const value = Number(plain);
+  return Number.isFinite(value) ? value : text.trim();
+}
