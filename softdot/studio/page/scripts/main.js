@@ -119,11 +119,9 @@ function late() {
 
 function paintContents() {
   const { curves: pressed, circuit, array: cells, kept, recording: read, verdict } = store.contents;
-  if (isNew("curves", pressed) && pressed) {
-    const now = pressed.curves[pressed.curves.length - 1];
-    result.show(now);
-    designs.present(now);
-  }
+  const now = pressed && pressed.curves[pressed.curves.length - 1], { estimate } = store.state;
+  if (isNew("curves", pressed) && now) designs.present(now);
+  if (isNew("numbers", pressed && JSON.stringify([estimate, pressed.revision, now.quality, now.numbers])) && now) result.show(now, estimate);
   if (isNew("circuit", circuit) && circuit) result.circuit(circuit.found);
   if (isNew("array", cells) && cells) array.show(cells.pressed);
   if (isNew("kept", kept) && kept) designs.hear(kept);
@@ -157,7 +155,10 @@ function paintTasks({ tasks: known, artefacts }) {
 function paintMarks({ artefacts }) {
   const isOld = (name) => Boolean(artefacts[name] && !artefacts[name].current);
   find("#before").hidden = !isOld("numbers");
-  find("#before").textContent = `The numbers and curves are still those of a design before: ${artefacts.numbers ? artefacts.numbers.what : ""}.`;
+  const whose = `those of a design before: ${artefacts.numbers ? artefacts.numbers.what : ""}.`;
+  find("#before").textContent = store.state.estimate
+    ? `Force, charge and voltage are estimated; curves and other numbers are ${whose}`
+    : `The numbers and curves are still ${whose}`;
   for (const [name, place] of Object.entries(MARKED)) find(place).classList.toggle("stale", isOld(name));
   const name = tab.influences, place = find("#influences"), old = name && isOld(name);
   place.classList.toggle("stale", Boolean(old));

@@ -4,10 +4,11 @@ import { element, find } from "./dom.js";
 import { quantity } from "./numbers.js";
 
 const QUANTITIES = [
-  ["reaction_force_N", "Force", "N", "force_percent"],
-  ["film_charge_pC", "Charge", "pC", "charge_percent"],
-  ["open_circuit_voltage_V", "Open circuit", "V", "voltage_percent"],
+  ["reaction_force_N", "Force", "N", "force_percent", "force_N"],
+  ["film_charge_pC", "Charge", "pC", "charge_percent", "charge_pC"],
+  ["open_circuit_voltage_V", "Open circuit", "V", "voltage_percent", "voltage_V"],
 ];
+const ESTIMATED = 4;
 const COARSE_DIGITS = 2;
 const last = (values) => (values && values.length ? values[values.length - 1] : null);
 
@@ -30,38 +31,53 @@ function off(numbers, percent, value) {
 
 function card(numbers, quality, [key, title, unit, percent]) {
   const value = last(numbers[key]);
-  if (quality === "coarse")
-    return [title, quantity(value, unit, null, COARSE_DIGITS), "coarse, some percent off"];
+  if (quality === "coarse") {
+    return { title, value: quantity(value, unit, null, COARSE_DIGITS), words: "coarse, some percent off" };
+  }
   const [error, words, more] = off(numbers, percent, value);
-  return [title, quantity(value, unit, error), words, more];
+  return { title, value: quantity(value, unit, error), words, more };
 }
 
-export function show({ numbers, quality }) {
+// Of a design that is not pressed yet, from the derivatives of one that is.
+function estimated({ value, error }, [, title, unit]) {
+  return {
+    title,
+    value: quantity(value, unit, error),
+    words: "estimate",
+    more: "to first order from a press before",
+    fresh: true,
+  };
+}
+
+// The last press, and the estimate for the present design where there is one.
+export function show({ numbers, quality }, estimate) {
   const readout = last(numbers.readout_voltage_V),
     film = numbers.film || {};
-  const cards = QUANTITIES.map((one) => card(numbers, quality, one));
-  if (readout !== null) cards.push(["At the amplifier", quantity(readout, "V"), ""]);
+  const cards = QUANTITIES.map((one) =>
+    estimate ? estimated(estimate[one[ESTIMATED]], one) : card(numbers, quality, one),
+  );
+  if (readout !== null) cards.push({ title: "At the amplifier", value: quantity(readout, "V"), words: "" });
   const stress = quantity(film.max_principal_stress_MPa, "MPa"),
     capacitance = quantity(film.capacitance_pF, "pF");
-  cards.push(["Film strain", quantity(100 * film.max_principal_strain, "%"), `${stress}; ${capacitance}`]);
+  const strain = quantity(100 * film.max_principal_strain, "%");
+  cards.push({ title: "Film strain", value: strain, words: `${stress}; ${capacitance}` });
   const least = (numbers.sensitivity || {}).least_detectable_indentation_um;
   if (least !== null && least !== undefined) {
-    cards.push([
-      "Least depth seen",
-      quantity(least, "µm", null, 2),
-      `of noise ${quantity(numbers.sensitivity.noise_V, "V", null, 2)}`,
-    ]);
+    const noise = quantity(numbers.sensitivity.noise_V, "V", null, 2);
+    cards.push({
+      title: "Least depth seen",
+      value: quantity(least, "µm", null, 2),
+      words: `of noise ${noise}`,
+    });
   }
-  find("#numbers").replaceChildren(
-    ...cards.map(([title, value, words, more]) =>
-      element(
-        "div",
-        { title: more || words },
-        element("dt", {}, title),
-        element("dd", {}, value, element("small", {}, words)),
-      ),
-    ),
-  );
+  const made = ({ title, value, words, more, fresh }) =>
+    element(
+      "div",
+      { title: more || words, class: fresh ? "fresh" : null },
+      element("dt", {}, title),
+      element("dd", {}, value, element("small", {}, words)),
+    );
+  find("#numbers").replaceChildren(...cards.map(made));
 }
 
 export function circuit(found) {
