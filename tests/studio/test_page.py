@@ -172,7 +172,7 @@ def test_a_dropped_recording_is_read(studio, open_tab, tmp_path):
     assert tab.page.locator("#recording rect.band").count() == 10
     (rig / "rig.toml").write_text("seed = 'none'\n", "utf-8")
     tab.page.locator(".folder-file").set_input_files(rig)
-    tab.says("#tasks", "format is missing")
+    tab.says("#drop-tasks", "format is missing")
 
 
 def test_junk_is_refused_and_the_page_goes_on(studio, open_tab, tmp_path):

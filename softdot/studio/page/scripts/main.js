@@ -97,10 +97,10 @@ function paintForm({ design }) {
 function paintDesign({ design }) {
   const text = find("#text");
   if (document.activeElement !== text || !text.dataset.dirty) text.value = design.text;
-  editor.mark(design.mistakes);
+  if (isNew("lines", design.text + JSON.stringify(design.mistakes))) editor.mark(design.mistakes);
   for (const name of ["undo", "redo", "reset"]) find(`#${name}`).disabled = !design[name];
   const isChecked = design.is_checked || !tab.isBuilt;  // before, its form is as the hand has left it
-  if (!isChecked || !isNew("check", `${design.of} ${JSON.stringify(late())}`)) return;
+  if (!isChecked || !isNew("check", `${design.of} ${Boolean(design.values)} ${JSON.stringify(late())}`)) return;
   paintForm(store.state);
   array.state(design);
   next.mistakes(design, ask);

@@ -13,7 +13,7 @@ export const TITLES = {
   diagnosis: "Diagnosis",
 };
 
-const OF_DESIGN = ["kit", "report", "influences", "tolerances"];
+const OF_RECORDING = ["recording", "diagnosis"];
 
 function mending(sentence, remedy, ask) {
   const button =
@@ -101,28 +101,15 @@ export class Tasks {
         element("div", { class: "more" }),
         element("button", { type: "button", onclick: () => this.ask({ do: "cancel", task }) }, "Cancel"),
       );
-      find("#tasks").prepend(this.items[task]);
+      find(OF_RECORDING.includes(task) ? "#drop-tasks" : "#tasks").prepend(this.items[task]);
     }
     return this.items[task];
-  }
-
-  // text: of the present design; what was made of another one says so.
-  follow(text) {
-    this.text = text;
-    for (const [task, item] of Object.entries(this.items)) {
-      item.querySelector(".old").hidden =
-        !OF_DESIGN.includes(task) || item.madeOf === undefined || item.madeOf === text;
-    }
   }
 
   progress(told) {
     const item = this.item(told.task),
       bar = item.querySelector("progress");
     item.classList.remove("bad");
-    if (told.stage === "start") {
-      item.madeOf = this.text;
-      item.querySelector(".old").hidden = true;
-    }
     const left = told.left_s && told.count ? `, ${duration(told.left_s)} left` : "";
     item.querySelector(".state").textContent =
       `${told.stage}${told.count ? ` ${told.done} of ${told.count}` : ""}${told.text ? `: ${told.text}` : ""}${left}`;
