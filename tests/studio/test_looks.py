@@ -74,13 +74,13 @@ def test_the_view_is_turned_cut_and_asked(solid, open_tab):
     middle = box["x"] + 0.4 * box["width"], box["y"] + 0.6 * box["height"]
     page.mouse.move(*middle)
     until(lambda: page.locator(".hover").inner_text() in ("effector", "medium1", "medium2", "film", "dot"))
-    scale = page.locator(".marks .scale text").text_content()
+    scale = page.locator(".marks .scale path").get_attribute("d")
     page.mouse.wheel(0, -900)
     page.locator(".wheel").wait_for()  # the wheel is the page's until the view is clicked
-    assert page.locator(".marks .scale text").text_content() == scale
+    assert page.locator(".marks .scale path").get_attribute("d") == scale
     page.mouse.click(*middle)
     page.mouse.wheel(0, -900)
-    until(lambda: page.locator(".marks .scale text").text_content() != scale)
+    until(lambda: page.locator(".marks .scale path").get_attribute("d") != scale)
     handle = page.get_by_role("slider", name="Section plane")
     place = float(handle.get_attribute("aria-valuenow"))
     handle.focus()

@@ -57,8 +57,8 @@ def until(holds, timeout_s: float = 20.0) -> None:
 
 def at_full_load(tab: Tab) -> float:
     """Voltage that the circuit panel states; NaN before it states one."""
-    said = re.search(r"At full load ([\d.e-]+) V", tab.page.locator("#circuit .answer").inner_text())
-    return float(said[1]) if said else float("nan")
+    said = re.search(r"At full load ([\d.]+)\s(m?)V", tab.page.locator("#circuit .answer").inner_text())
+    return float(said[1]) * (1e-3 if said[2] else 1.0) if said else float("nan")
 
 
 @pytest.mark.browser
@@ -70,7 +70,7 @@ def test_three_sliders_change_the_curves_to_the_numbers_of_a_run(studio, open_ta
     tab.page.get_by_role("button", name="Keep this design").click()
     for key, steps in zip(SLIDERS, (-12, 8, -4), strict=True):
         slide(tab, key, steps)
-    until(lambda: getattr(tab, "presses", 0) == 2)
+    until(lambda: getattr(tab, "presses", 0) == 2, 90.0)
     tab.pressed()
     assert [last_point(tab, number) for number in range(3)] != before
     text = tab.text
@@ -151,7 +151,7 @@ def test_a_tab_that_is_loaded_again_has_its_design_and_another_tab_its_own(studi
     for tab, thickness in ((first, "0.61"), (second, "0.47")):
         tab.page.locator("#undo:enabled").wait_for()
         tab.page.reload()
-        tab.page.locator("#form .field").first.wait_for()
+        tab.page.locator("#form .field").first.wait_for(state="attached")
         assert f"thickness_mm = {thickness}" in tab.text
         assert tab.page.locator("#undo").is_enabled()
 

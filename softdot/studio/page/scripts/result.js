@@ -9,7 +9,8 @@ const QUANTITIES = [
   ["open_circuit_voltage_V", "Open circuit", "V", "voltage_percent", "voltage_V"],
 ];
 const ESTIMATED = 4;
-const COARSE_DIGITS = 2;
+const COARSE_DIGITS = 2,
+  CIRCUIT_DIGITS = 4;
 const last = (values) => (values && values.length ? values[values.length - 1] : null);
 
 // What the program says of the press.
@@ -94,7 +95,7 @@ export function circuit(found) {
     element(
       "p",
       {},
-      `At full load ${quantity(last(found.readout_voltage_V), "V")}; largest over the press ${quantity(most, "V")}.`,
+      `At full load ${quantity(last(found.readout_voltage_V), "V", null, CIRCUIT_DIGITS)}; largest over the press ${quantity(most, "V", null, CIRCUIT_DIGITS)}.`,
     ),
     channel({ ...at, width: 560, height: 170 }),
   );
