@@ -223,8 +223,8 @@ def named(task: str) -> Callable[..., Any]:
 
 
 STOP = Event()
-"""In the process: its task is to stop where it next tells how far it is, between two steps, so that nothing is left half
-done in a library.
+"""In the process: its task is to stop where it next tells how far it is, between two steps, so that no library is left
+in the middle of something.
 """
 
 

@@ -1,5 +1,6 @@
 // The form, made from the schema of the configuration: a new key appears by itself.
 import { element, short, worded } from "./dom.js";
+import { numberOf } from "./numbers.js";
 
 const OPEN = ["segment", "effector", "medium1", "film", "medium2", "press", "dot"];
 const NAMES = { medium1: "Medium 1", medium2: "Medium 2", readout: "Amplifier" };
@@ -214,11 +215,11 @@ export class Form {
   }
 
   number(found, path, id) {
-    const whole = found.type === "integer", input = element("input", { type: "number", id, step: whole ? "1" : "any", placeholder: found.optional ? "none" : "" });
+    const whole = found.type === "integer", input = element("input", { type: "text", inputmode: whole ? "numeric" : "decimal", class: "number", id, placeholder: found.optional ? "none" : "" });
     const slider = element("input", { type: "range", min: 0, max: 1000, step: 5, "aria-label": `${dotted(path)}, slider` });
     let scale = null, held = false, waiting = null;
     const send = (value, joined) => this.set(path, value, joined);
-    const typed = typing(input, () => send(input.value === "" ? null : Number(input.value), false));
+    const typed = typing(input, () => send(numberOf(input.value), false));
     slider.addEventListener("input", () => {
       const value = scale.value(Number(slider.value));
       input.value = value;
@@ -244,9 +245,9 @@ export class Form {
   pair(found, path, id) {
     const inputs = found.prefixItems.map((one, i) => {
       const names = one.enum;
-      const made = names ? element("select", {}, ...names.map((each) => element("option", { value: each }, each))) : element("input", { type: "number", step: "any" });
+      const made = names ? element("select", {}, ...names.map((each) => element("option", { value: each }, each))) : element("input", { type: "text", inputmode: "decimal", class: "number" });
       made.setAttribute("aria-label", `${dotted(path)} ${"xyz"[i] || i + 1}`);
-      made.addEventListener("change", () => this.set(path, inputs.map((each) => (names ? each.value : Number(each.value)))));
+      made.addEventListener("change", () => this.set(path, inputs.map((each) => (names ? each.value : numberOf(each.value)))));
       return made;
     });
     inputs[0].id = id;
