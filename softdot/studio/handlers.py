@@ -243,7 +243,8 @@ class SocketHandler(Guarded, WebSocketHandler):
     def _send(self, message: dict[str, Any]) -> None:
         with suppress(WebSocketClosedError):
             frame = packed(message) if "view" in message else json.dumps(message)
-            self.write_message(frame, binary=isinstance(frame, bytes))
+            sent = asyncio.ensure_future(self.write_message(frame, binary=isinstance(frame, bytes)))
+            sent.add_done_callback(lambda done: done.cancelled() or done.exception())  # the tab may be gone
 
 
 def application(tabs: Tabs) -> Application:

@@ -101,7 +101,7 @@ def test_a_refused_upload_leaves_no_file_and_no_recording(start_studio, tmp_path
 
     code, said = IOLoop().run_sync(talk, timeout=60)
     assert (code, "more than 100 MB" in said) == (400, True)
-    assert [path for path in tmp_path.rglob("*.csv")] == []
+    assert list(tmp_path.rglob("*.csv")) == []
     assert running.end() == 0
 
 
