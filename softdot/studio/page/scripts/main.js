@@ -1,6 +1,6 @@
 // The tab: its socket to the program, and who shows what the program tells.
 import * as array from "./array.js";
-import { duration, element, find } from "./dom.js";
+import { duration, element, find, short } from "./dom.js";
 import { Form, filter } from "./form.js";
 import * as next from "./next.js";
 import * as recording from "./recording.js";
@@ -94,6 +94,8 @@ function paintDesign({ design }) {
   next.mistakes(design, ask);
   next.warnings(design.mistakes.length ? { warnings: [], remedies: [] } : design, late(), ask);
   next.cost(design);
+  const standard = design.values && design.values.dot.standard, choice = find("#plate select");
+  if (standard && isNew("standard", standard) && choice.options.length) choice.value = standard;  // that of the dot
 }
 
 // Warnings that only a press tells, of this design.
@@ -121,6 +123,16 @@ function paintContents() {
     tab.painted.verdict = undefined;
   }
   if (isNew("verdict", verdict) && verdict) recording.verdict(verdict.result, ask, address);
+}
+
+// Force, charge and voltage while the press is still to come.
+function paintEstimate({ estimate }) {
+  const place = find("#estimate") || element("p", { id: "estimate", role: "status" });
+  if (!place.isConnected) find("#before").before(place);
+  place.hidden = !estimate;
+  if (!estimate) return;
+  const one = (name, unit) => `${short(estimate[name].value)} ± ${Number(estimate[name].error.toPrecision(2))} ${unit}`;
+  place.textContent = `Estimate: ${one("force_N", "N")}, ${one("charge_pC", "pC")}, ${one("voltage_V", "V")}.`;
 }
 
 // Long work: each as far as the program says it is.
@@ -172,6 +184,7 @@ function paint() {
   paintTasks(store.state);
   paintBody();
   paintPress(store.state);
+  paintEstimate(store.state);
   paintMarks(store.state);
 }
 
@@ -184,7 +197,6 @@ function hear(told) {
   else if (told.tell === "said") say(told.text, told.bad);
   else if (told.tell === "form") {
     find("#plate select").replaceChildren(...told.standards.map((one) => element("option", { value: one.name }, one.name)));
-    find("#plate select").value = "marburg-medium";
     tab.painted.check = undefined;
   } else if (told.tell === "earlier") paintEarlier(told.designs);
   if (["state", "form", "elsewhere"].includes(told.tell)) paint();
