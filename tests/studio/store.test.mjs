@@ -13,7 +13,8 @@ function storage() {
 const state = (heard, artefacts = {}) => ({ tell: "state", heard, artefacts, design: { text: "" } });
 
 test("a change is sent once and kept until it is heard", () => {
-  const sent = [], store = new Store(storage());
+  const sent = [],
+    store = new Store(storage());
   store.opened((text) => sent.push(JSON.parse(text)));
   store.hear(state(0));
   assert.equal(store.ask({ do: "set", key: ["a"], value: 1 }), true);
@@ -24,7 +25,9 @@ test("a change is sent once and kept until it is heard", () => {
 });
 
 test("what was changed without the program is sent when it answers, also after the page was loaded again", () => {
-  const kept = storage(), first = new Store(kept), sent = [];
+  const kept = storage(),
+    first = new Store(kept),
+    sent = [];
   first.opened(() => {});
   first.hear(state(0));
   first.closed(false);
@@ -32,16 +35,20 @@ test("what was changed without the program is sent when it answers, also after t
   assert.equal(first.ask({ do: "undo" }), false);
   const again = new Store(kept);
   again.opened((text) => sent.push(JSON.parse(text)));
-  assert.deepEqual(sent, []);  // not before the program has told what it heard
+  assert.deepEqual(sent, []); // not before the program has told what it heard
   again.hear(state(0));
-  assert.deepEqual(sent.map(({ do: what, value }) => [what, value]), [["set", 3]]);
+  assert.deepEqual(
+    sent.map(({ do: what, value }) => [what, value]),
+    [["set", 3]],
+  );
   again.hear(state(4));
   assert.equal(again.unsent.length, 0);
 });
 
 test("what is not current says of which design it is, and is not shown as that of this one", () => {
   const store = new Store(storage());
-  const view = { tell: "view", revision: 1, view: { steps: [] } }, parts = { tell: "parts", revision: 2, view: {} };
+  const view = { tell: "view", revision: 1, view: { steps: [] } },
+    parts = { tell: "parts", revision: 2, view: {} };
   store.hear(view);
   store.hear(parts);
   store.hear(state(0, { view: { current: false, what: "depth = 1" }, parts: { current: true, what: "this design" } }));
@@ -55,7 +62,9 @@ test("what is not current says of which design it is, and is not shown as that o
 });
 
 test("a frame is unpacked into bytes of their own", () => {
-  const head = new TextEncoder().encode(JSON.stringify({ tell: "parts", view: { points: { at: 0, bytes: 3 }, plane: 1 } }).padEnd(80));
+  const head = new TextEncoder().encode(
+    JSON.stringify({ tell: "parts", view: { points: { at: 0, bytes: 3 }, plane: 1 } }).padEnd(80),
+  );
   const frame = new Uint8Array(4 + head.length + 4);
   new DataView(frame.buffer).setUint32(0, head.length, true);
   frame.set(head, 4);
@@ -66,6 +75,15 @@ test("a frame is unpacked into bytes of their own", () => {
 });
 
 test("numbers are read as people type them", () => {
-  const typed = { "0,5": 0.5, "0.5": 0.5, " 12 ": 12, "1e-9": 1e-9, "\u22123": -3, "": null, "1,000.5": "1,000.5", abc: "abc" };
+  const typed = {
+    "0,5": 0.5,
+    0.5: 0.5,
+    " 12 ": 12,
+    "1e-9": 1e-9,
+    "\u22123": -3,
+    "": null,
+    "1,000.5": "1,000.5",
+    abc: "abc",
+  };
   for (const [text, value] of Object.entries(typed)) assert.equal(numberOf(text), value);
 });

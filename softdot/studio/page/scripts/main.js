@@ -8,8 +8,16 @@ import * as result from "./result.js";
 import { Store, unpacked } from "./store.js";
 
 const key = new URLSearchParams(location.search).get("key") || "";
-const isCopy = sessionStorage.getItem("open") === "yes";  // a copy of a tab has its storage too
-const tab = { name: sessionStorage.getItem("tab") || "", form: null, circuit: null, isBuilt: false, shown: null, painted: {}, tries: 0 };
+const isCopy = sessionStorage.getItem("open") === "yes"; // a copy of a tab has its storage too
+const tab = {
+  name: sessionStorage.getItem("tab") || "",
+  form: null,
+  circuit: null,
+  isBuilt: false,
+  shown: null,
+  painted: {},
+  tries: 0,
+};
 const store = new Store(sessionStorage);
 const viewer = softdotViewer(find("#view3d"));
 const tasks = new next.Tasks(ask, address);
@@ -44,15 +52,19 @@ function isNew(name, now) {
 }
 
 function paintBody() {
-  const { state } = store, body = store.bodyToShow(tab.shown);
+  const { state } = store,
+    body = store.bodyToShow(tab.shown);
   if (!body || !body.view) return;
   if (isNew("body", body)) {
     viewer.show(body.view);
     find("#view3d .play").disabled = body.view.steps.length < 2;
   }
   tab.shown = body;
-  const isPress = body.tell === "view", current = store.isCurrent(body.tell);
-  let words = isPress ? `The ${body.quality === "array" ? "coarse" : body.quality} press. Move the step, or play it.` : "The parts at rest, as they would be made; the press follows when your hand rests.";
+  const isPress = body.tell === "view",
+    current = store.isCurrent(body.tell);
+  let words = isPress
+    ? `The ${body.quality === "array" ? "coarse" : body.quality} press. Move the step, or play it.`
+    : "The parts at rest, as they would be made; the press follows when your hand rests.";
   if (!current) words = state.design.mistakes.length ? "The last design without a mistake." : store.before(body.tell);
   find("#view3d .shown").textContent = words;
   find("#view3d canvas").classList.toggle("stale", !current);
@@ -87,15 +99,16 @@ function paintDesign({ design }) {
   const text = find("#text");
   if (document.activeElement !== text || !text.dataset.dirty) text.value = design.text;
   for (const name of ["undo", "redo", "reset"]) find(`#${name}`).disabled = !design[name];
-  const isChecked = design.is_checked || !tab.isBuilt;  // before, its form is as the hand has left it
+  const isChecked = design.is_checked || !tab.isBuilt; // before, its form is as the hand has left it
   if (!isChecked || !isNew("check", `${design.of} ${JSON.stringify(late())}`)) return;
   paintForm(store.state);
   array.state(design);
   next.mistakes(design, ask);
   next.warnings(design.mistakes.length ? { warnings: [], remedies: [] } : design, late(), ask);
   next.cost(design);
-  const standard = design.values && design.values.dot.standard, choice = find("#plate select");
-  if (standard && isNew("standard", standard) && choice.options.length) choice.value = standard;  // that of the dot
+  const standard = design.values && design.values.dot.standard,
+    choice = find("#plate select");
+  if (standard && isNew("standard", standard) && choice.options.length) choice.value = standard; // that of the dot
 }
 
 // Warnings that only a press tells, of this design.
@@ -115,7 +128,10 @@ function paintContents() {
   if (isNew("kept", kept) && kept) next.kept(kept, ask);
   for (const [name, title] of Object.entries(RESULTS)) {
     const found = store.contents[name];
-    if (isNew(name, found) && found) { next.influences(found.result, title); tab.influences = name; }
+    if (isNew(name, found) && found) {
+      next.influences(found.result, title);
+      tab.influences = name;
+    }
   }
   if (isNew("recording", read)) {
     if (read && store.form) recording.show(read.result, ask, store.form.units);
@@ -138,7 +154,8 @@ function paintEstimate({ estimate }) {
 // Long work: each as far as the program says it is.
 function paintTasks({ tasks: known, artefacts }) {
   for (const [task, { is, progress, said, took_s: took }] of Object.entries(known)) {
-    const name = task === "diagnosis" ? "verdict" : task, made = store.contents[name];
+    const name = task === "diagnosis" ? "verdict" : task,
+      made = store.contents[name];
     if (isNew(`result of ${task}`, made) && made) tasks.done({ task, result: made.result });
     if (isNew(`state of ${task}`, JSON.stringify(known[task]))) {
       if (is === "running") tasks.progress({ task, ...progress });
@@ -152,18 +169,31 @@ function paintTasks({ tasks: known, artefacts }) {
 function paintMarks({ artefacts }) {
   const isOld = (name) => Boolean(artefacts[name] && !artefacts[name].current);
   find("#before").hidden = !isOld("numbers");
-  find("#before").textContent = `The numbers and curves are still those of a design before: ${artefacts.numbers ? artefacts.numbers.what : ""}.`;
+  find("#before").textContent =
+    `The numbers and curves are still those of a design before: ${artefacts.numbers ? artefacts.numbers.what : ""}.`;
   for (const [name, place] of Object.entries(MARKED)) find(place).classList.toggle("stale", isOld(name));
-  const name = tab.influences, place = find("#influences"), old = name && isOld(name);
+  const name = tab.influences,
+    place = find("#influences"),
+    old = name && isOld(name);
   place.classList.toggle("stale", Boolean(old));
   if (!isNew("mark of influences", old ? store.before(name) : "") && place.querySelector(".before")) return;
   for (const mark of place.querySelectorAll(".before")) mark.remove();
-  if (old) place.prepend(element("p", { class: "before" }, `${store.before(name)} `, element("button", { type: "button", onclick: () => ask({ do: "start", task: name }) }, "Make it anew")));
+  if (old)
+    place.prepend(
+      element(
+        "p",
+        { class: "before" },
+        `${store.before(name)} `,
+        element("button", { type: "button", onclick: () => ask({ do: "start", task: name }) }, "Make it anew"),
+      ),
+    );
 }
 
 function paintLink() {
   const { state, link } = store;
-  const kept = store.unsent.length ? "your last change is kept in this page and is sent when it answers" : "nothing can be changed until it does";
+  const kept = store.unsent.length
+    ? "your last change is kept in this page and is sent when it answers"
+    : "nothing can be changed until it does";
   const words = {
     starting: "starting…",
     open: state && state.saved !== true ? state.saved : "on this machine only; every change is saved",
@@ -172,7 +202,10 @@ function paintLink() {
     elsewhere: "this design is open in another tab, where it goes on",
   };
   find("#link").textContent = words[link] + (link === "open" && state && state.machine ? ` – ${state.machine}` : "");
-  find("#link").classList.toggle("bad", link !== "open" && link !== "starting" || Boolean(state && state.saved !== true));
+  find("#link").classList.toggle(
+    "bad",
+    (link !== "open" && link !== "starting") || Boolean(state && state.saved !== true),
+  );
   find("#design").inert = ["lost", "ended", "elsewhere"].includes(link);
 }
 
@@ -196,7 +229,9 @@ function hear(told) {
   } else if (told.tell === "elsewhere") store.link = "elsewhere";
   else if (told.tell === "said") say(told.text, told.bad);
   else if (told.tell === "form") {
-    find("#plate select").replaceChildren(...told.standards.map((one) => element("option", { value: one.name }, one.name)));
+    find("#plate select").replaceChildren(
+      ...told.standards.map((one) => element("option", { value: one.name }, one.name)),
+    );
     tab.painted.check = undefined;
   } else if (told.tell === "earlier") paintEarlier(told.designs);
   if (["state", "form", "elsewhere"].includes(told.tell)) paint();
@@ -205,7 +240,10 @@ function hear(told) {
 function paintEarlier(designs) {
   const time = (one) => new Date(1000 * one.saved_s).toLocaleString();
   find(".earlier").hidden = !designs.length;
-  find("#earlier").replaceChildren(element("option", { value: "" }, "choose…"), ...designs.map((one) => element("option", { value: one.name }, `${time(one)}: ${one.lines}`)));
+  find("#earlier").replaceChildren(
+    element("option", { value: "" }, "choose…"),
+    ...designs.map((one) => element("option", { value: one.name }, `${time(one)}: ${one.lines}`)),
+  );
 }
 
 // The address of the socket. Where this tab comes back, another program may listen on the port by now: the program shows
@@ -213,12 +251,13 @@ function paintEarlier(designs) {
 async function socketAddress() {
   const own = address("/socket") + (isCopy && !tab.hasOpened ? "&copy=1" : "");
   if (!tab.hasOpened || !window.crypto.subtle) return own;
-  const bytes = (text) => new TextEncoder().encode(text), hex = (found) => [...new Uint8Array(found)].map((one) => one.toString(16).padStart(2, "0")).join("");
+  const bytes = (text) => new TextEncoder().encode(text),
+    hex = (found) => [...new Uint8Array(found)].map((one) => one.toString(16).padStart(2, "0")).join("");
   const secret = await crypto.subtle.importKey("raw", bytes(key), { name: "HMAC", hash: "SHA-256" }, false, ["sign"]);
   const proof = async (text) => hex(await crypto.subtle.sign("HMAC", secret, bytes(text)));
   const nonce = hex(crypto.getRandomValues(new Uint8Array(16)));
   const greeting = await (await fetch(`/greeting?nonce=${nonce}`)).json();
-  if (greeting.proof !== await proof(`studio:${nonce}`)) throw new Error("another program answers");
+  if (greeting.proof !== (await proof(`studio:${nonce}`))) throw new Error("another program answers");
   const answer = await proof(`tab:${greeting.question}`);
   return `/socket?tab=${encodeURIComponent(tab.name)}&question=${greeting.question}&proof=${answer}`;
 }
@@ -259,27 +298,43 @@ window.addEventListener("pagehide", () => sessionStorage.removeItem("open"));
 function typing() {
   const text = find("#text");
   let later = null;
-  const send = () => { delete text.dataset.dirty; if (store.state && text.value !== store.state.design.text) ask({ do: "text", text: text.value }); };
-  text.addEventListener("input", () => { text.dataset.dirty = "yes"; clearTimeout(later); later = setTimeout(send, 500); });
+  const send = () => {
+    delete text.dataset.dirty;
+    if (store.state && text.value !== store.state.design.text) ask({ do: "text", text: text.value });
+  };
+  text.addEventListener("input", () => {
+    text.dataset.dirty = "yes";
+    clearTimeout(later);
+    later = setTimeout(send, 500);
+  });
   text.addEventListener("change", send);
 }
 
 function files() {
   const input = find("#import-file");
   const open = async (file) => {
-    if (file.size > 200000) return say(`'${file.name}' has ${(file.size / 1e6).toFixed(1)} MB: a design is a small TOML file.`, true);
+    if (file.size > 200000)
+      return say(`'${file.name}' has ${(file.size / 1e6).toFixed(1)} MB: a design is a small TOML file.`, true);
     return ask({ do: "text", text: await file.text() });
   };
   find("#import").addEventListener("click", () => input.click());
-  input.addEventListener("change", () => { if (input.files[0]) open(input.files[0]); input.value = ""; });
+  input.addEventListener("change", () => {
+    if (input.files[0]) open(input.files[0]);
+    input.value = "";
+  });
   find("#export").addEventListener("click", () => {
-    const made = URL.createObjectURL(new Blob([store.state ? store.state.design.text : ""], { type: "application/toml" }));
+    const made = URL.createObjectURL(
+      new Blob([store.state ? store.state.design.text : ""], { type: "application/toml" }),
+    );
     element("a", { href: made, download: "design.toml" }).click();
     setTimeout(() => URL.revokeObjectURL(made), 1000);
   });
   const design = find("#design");
   design.addEventListener("dragover", (event) => event.preventDefault());
-  design.addEventListener("drop", (event) => { event.preventDefault(); if (event.dataTransfer.files[0]) open(event.dataTransfer.files[0]); });
+  design.addEventListener("drop", (event) => {
+    event.preventDefault();
+    if (event.dataTransfer.files[0]) open(event.dataTransfer.files[0]);
+  });
 }
 
 function buttons() {
@@ -290,16 +345,40 @@ function buttons() {
   document.addEventListener("change", (event) => typed.delete(event.target), true);
   document.addEventListener("keydown", (event) => {
     if (!(event.ctrlKey || event.metaKey) || typed.has(event.target) || event.target.matches("textarea")) return;
-    const name = event.key.toLowerCase() === "z" ? (event.shiftKey ? "redo" : "undo") : event.key === "y" ? "redo" : null;
-    if (name) { event.preventDefault(); ask({ do: name }); }
+    const name =
+      event.key.toLowerCase() === "z" ? (event.shiftKey ? "redo" : "undo") : event.key === "y" ? "redo" : null;
+    if (name) {
+      event.preventDefault();
+      ask({ do: name });
+    }
   });
   find("#press .cancel").addEventListener("click", () => ask({ do: "cancel", task: "press" }));
-  find("#press .again").addEventListener("click", () => { ask({ do: "press" }); });
-  for (const one of document.querySelectorAll("[data-start]")) one.addEventListener("click", () => ask({ do: "start", task: one.dataset.start }));
-  find("#plate button").addEventListener("click", () => ask({ do: "start", task: "plate", kind: "text", text: find("#plate input").value, standard: find("#plate select").value }));
-  find("#keep").addEventListener("submit", (event) => { event.preventDefault(); ask({ do: "keep", name: find("#keep input").value }); find("#keep input").value = ""; });
-  find("#earlier").addEventListener("change", (event) => { if (event.target.value) ask({ do: "restore", name: event.target.value }); event.target.value = ""; });
-  find("#said button").addEventListener("click", () => { find("#said").hidden = true; });
+  find("#press .again").addEventListener("click", () => {
+    ask({ do: "press" });
+  });
+  for (const one of document.querySelectorAll("[data-start]"))
+    one.addEventListener("click", () => ask({ do: "start", task: one.dataset.start }));
+  find("#plate button").addEventListener("click", () =>
+    ask({
+      do: "start",
+      task: "plate",
+      kind: "text",
+      text: find("#plate input").value,
+      standard: find("#plate select").value,
+    }),
+  );
+  find("#keep").addEventListener("submit", (event) => {
+    event.preventDefault();
+    ask({ do: "keep", name: find("#keep input").value });
+    find("#keep input").value = "";
+  });
+  find("#earlier").addEventListener("change", (event) => {
+    if (event.target.value) ask({ do: "restore", name: event.target.value });
+    event.target.value = "";
+  });
+  find("#said button").addEventListener("click", () => {
+    find("#said").hidden = true;
+  });
   find("#find").addEventListener("input", (event) => filter(find("#form"), event.target.value));
   find("#form").addEventListener("submit", (event) => event.preventDefault());
 }

@@ -6,7 +6,8 @@
 // link: "starting", "open", "lost" or "ended".
 
 const CHANGES = new Set(["set", "change", "text"]);
-const same = (one, other) => one.do === "set" && other.do === "set" && JSON.stringify(one.key) === JSON.stringify(other.key);
+const same = (one, other) =>
+  one.do === "set" && other.do === "set" && JSON.stringify(one.key) === JSON.stringify(other.key);
 
 export class Store {
   // storage: as sessionStorage; what is not sent yet is kept there and outlives a reload.
@@ -106,10 +107,12 @@ export class Store {
 
 // A message with arrays: the length of its head, the head, then the arrays, each of which becomes bytes of its own.
 export function unpacked(buffer) {
-  const length = new DataView(buffer).getUint32(0, true), start = 4 + length;
+  const length = new DataView(buffer).getUint32(0, true),
+    start = 4 + length;
   const told = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
   for (const [name, one] of Object.entries(told.view || {})) {
-    if (one && one.bytes !== undefined) told.view[name] = new Uint8Array(buffer.slice(start + one.at, start + one.at + one.bytes));
+    if (one && one.bytes !== undefined)
+      told.view[name] = new Uint8Array(buffer.slice(start + one.at, start + one.at + one.bytes));
   }
   return told;
 }
