@@ -1,6 +1,6 @@
 """Force, charge and voltage of a design from those of a similar one that was pressed, to first order in logarithms.
 
-ln F(x) = ln F(x0) + sum over the numbers that differ of p_i ln(x_i / x0_i), with p_i = d ln F / d ln x_i at x0.
+ln F(x) = ln F(x0) + sum of p_i ln(x_i / x0_i) over the numbers that differ, p_i = d ln F / d ln x_i at x0
 """
 
 from collections.abc import Mapping
@@ -24,7 +24,7 @@ Values = tuple[float, float, float]
 
 
 @dataclass
-class Basis:
+class PressedBeside:
     """A press from which others are estimated: stated and all values by dotted key, its answer, and its exponents."""
 
     stated: dict[str, Any]
@@ -37,7 +37,7 @@ class Estimator:
     """Presses of a tab, by their press_hash, with what they say of designs beside them."""
 
     def __init__(self) -> None:
-        self._bases: dict[str, Basis] = {}
+        self._bases: dict[str, PressedBeside] = {}
         self._scale = 1.0
 
     def knows(self, press_hash: str) -> bool:
@@ -56,7 +56,7 @@ class Estimator:
             )
             self._scale = max(self._scale, *ratios, 1.0)
         before = self._bases.pop(press_hash, None)
-        made = Basis(dotted(parse_toml(text, "design")), dotted(values), answer)
+        made = PressedBeside(dotted(parse_toml(text, "design")), dotted(values), answer)
         made.exponents = before.exponents if before else {}
         self._bases[press_hash] = made
         while len(self._bases) > MOST_BASES:
@@ -91,7 +91,7 @@ class Estimator:
         return found
 
 
-def _shifts(basis: Basis, stated: Mapping[str, Any]) -> dict[str, float] | None:
+def _shifts(basis: PressedBeside, stated: Mapping[str, Any]) -> dict[str, float] | None:
     """Dotted key -> ln(x / x0) of all numbers that differ; None where more differs, or an exponent is missing."""
     shifts: dict[str, float] = {}
     for key in basis.stated.keys() | stated.keys():

@@ -242,7 +242,8 @@ class SocketHandler(Guarded, WebSocketHandler):
     def _send(self, message: dict[str, Any]) -> None:
         with suppress(WebSocketClosedError):
             content = packed(message)
-            self.write_message(content, binary=isinstance(content, bytes))
+            sent = asyncio.ensure_future(self.write_message(content, binary=isinstance(content, bytes)))
+            sent.add_done_callback(lambda done: done.cancelled() or done.exception())  # the tab may be gone
 
 
 def application(tabs: Tabs) -> Application:

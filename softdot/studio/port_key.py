@@ -33,7 +33,8 @@ class PortKey:
         file = self._file(port)
         key = self._read(file) or new_key()
         with suppress(OSError):
-            self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+            for folder in (self._folder.parent, self._folder):
+                folder.mkdir(parents=True, exist_ok=True, mode=0o700)
             write_whole_text(file, key)
             file.chmod(0o600)
         return key

@@ -160,7 +160,7 @@ class Pool:
         """
         async with self._rooms[room].place(need_GB, tell):
             for _ in range(2):
-                with suppress(ProcessDiedError):
+                with suppress(ProcessDiedError, TimeoutError):
                     return await self._run(task, *arguments, tell=tell)
         raise MachineError("its process was ended twice by this machine, whose memory may be short; it was not done")
 
@@ -169,18 +169,20 @@ class Pool:
         worker = next((one for one in self._idle if one.is_warm), self._idle[0])
         self._idle.remove(worker)
         self._busy.append(worker)
-        self.prepare()
         try:
             if not worker.is_warm:
                 tell(LOADING)
                 await worker.until_warm()
+            self.prepare()  # the next one loads once this one has, so that the first press has the cores
             found = await worker.run(task, *arguments, tell=tell)
         except asyncio.CancelledError:
             stopping = asyncio.create_task(self._stop(worker))
             self._stopping.add(stopping)
             stopping.add_done_callback(self._stopping.discard)
             raise
-        except BaseException:
+        except BaseException as error:
+            if isinstance(error, TimeoutError):  # it does not load
+                worker.end()
             self._put_back(worker)
             raise
         self._put_back(worker)
@@ -223,8 +225,8 @@ def named(task: str) -> Callable[..., Any]:
 
 
 STOP = Event()
-"""In the process: its task is to stop where it next tells how far it is, between two steps, so that nothing is left half
-done in a library.
+"""In the process: its task is to stop where it next tells how far it is, between two steps, so that no library is left
+in the middle of something.
 """
 
 

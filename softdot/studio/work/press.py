@@ -3,7 +3,7 @@
 import math
 import pickle
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -76,7 +76,7 @@ def press_of_cell(text: str, tell: Tell) -> dict[str, Any]:
         "charge_pC": [charge[-1] for charge in pressed.charges_pC.values()],
         "voltage_V": [voltage[-1] for voltage in pressed.signals_V.values()],
         "amplified": press.is_amplified,
-        "warnings": pressed.doubts,
+        "warnings": without_mesh(pressed.doubts),
         "failure": pressed.failure,
     }
     return {"array": plain(numbers), "view": _view(pressed)}
@@ -100,13 +100,19 @@ def _pressed(case: Case, progress: "TaskProgress", quality: str) -> dict[str, An
     pressed = _pressed_with_progress(case, progress)
     result = pressed.result
     numbers = {"mesh": mesh_part(case.mesh_quality, result.unknowns), **press_part(case.model, result, pressed.course)}
-    numbers |= {"warnings": pressed.doubts, "remedies": late_remedies(case.config, pressed.doubts)}
+    doubts = without_mesh(pressed.doubts) if quality == "coarse" else pressed.doubts
+    numbers |= {"warnings": doubts, "remedies": late_remedies(case.config, doubts)}
     return {
         "quality": quality,
         "numbers": plain(numbers),
         "view": _view(pressed),
         "history": pickle.dumps(without_fields(result)),
     }
+
+
+def without_mesh(doubts: Sequence[str]) -> list[str]:
+    """Warnings of a press on larger elements without those about its elements, which are not the design's."""
+    return [one for one in doubts if "mesh." not in one]
 
 
 def without_fields(result: PressResult) -> PressResult:

@@ -15,8 +15,16 @@ import { Editor, prepareTabs } from "./toml.js";
 import { View } from "./view.js";
 
 const key = new URLSearchParams(location.search).get("key") || "";
-const isCopy = sessionStorage.getItem("open") === "yes";  // a copy of a tab has its storage too
-const tab = { name: sessionStorage.getItem("tab") || "", form: null, circuit: null, isBuilt: false, shown: null, painted: {}, tries: 0 };
+const isCopy = sessionStorage.getItem("open") === "yes"; // a copy of a tab has its storage too
+const tab = {
+  name: sessionStorage.getItem("tab") || "",
+  form: null,
+  circuit: null,
+  isBuilt: false,
+  shown: null,
+  painted: {},
+  tries: 0,
+};
 const store = new Store(sessionStorage);
 const viewer = new View(find("#view3d"));
 const curves = new Curves(find("#curves"), (text) => { find("#heard").textContent = text; });
@@ -55,14 +63,18 @@ function isNew(name, now) {
 }
 
 function paintBody() {
-  const { state } = store, body = store.bodyToShow(tab.shown);
+  const { state } = store,
+    body = store.bodyToShow(tab.shown);
   if (!body || !body.view) return;
   if (isNew("body", body)) {
     viewer.show(body.view);
   }
   tab.shown = body;
-  const isPress = body.tell === "view", current = store.isCurrent(body.tell);
-  let words = isPress ? `The ${body.quality === "array" ? "coarse" : body.quality} press. Move the step, or play it.` : "The parts at rest, as they would be made; the press follows when your hand rests.";
+  const isPress = body.tell === "view",
+    current = store.isCurrent(body.tell);
+  let words = isPress
+    ? `The ${body.quality === "array" ? "coarse" : body.quality} press. Move the step, or play it.`
+    : "The parts at rest, as they would be made; the press follows when your hand rests.";
   if (!current) words = state.design.mistakes.length ? "The last design without a mistake." : store.before(body.tell);
   find("#view3d .shown").textContent = words;
   find("#view3d canvas").classList.toggle("stale", !current);
@@ -99,13 +111,16 @@ function paintDesign({ design }) {
   if (document.activeElement !== text || !text.dataset.dirty) text.value = design.text;
   if (isNew("lines", design.text + JSON.stringify(design.mistakes))) editor.mark(design.mistakes);
   for (const name of ["undo", "redo", "reset"]) find(`#${name}`).disabled = !design[name];
-  const isChecked = design.is_checked || !tab.isBuilt;  // before, its form is as the hand has left it
+  const isChecked = design.is_checked || !tab.isBuilt; // before, its form is as the hand has left it
   if (!isChecked || !isNew("check", `${design.of} ${Boolean(design.values)} ${JSON.stringify(late())}`)) return;
   paintForm(store.state);
   array.state(design);
   next.mistakes(design, ask);
   next.warnings(design.mistakes.length ? { warnings: [], remedies: [] } : design, late(), ask);
   next.cost(design);
+  const standard = design.values && design.values.dot.standard,
+    choice = find("#plate select");
+  if (standard && isNew("standard", standard) && choice.options.length) choice.value = standard; // that of the dot
 }
 
 // Warnings that only a press tells, of this design.
@@ -127,7 +142,10 @@ function paintContents() {
   if (isNew("kept", kept) && kept) designs.hear(kept);
   for (const [name, title] of Object.entries(RESULTS)) {
     const found = store.contents[name];
-    if (isNew(name, found) && found) { next.influences(found.result, title); tab.influences = name; }
+    if (isNew(name, found) && found) {
+      next.influences(found.result, title);
+      tab.influences = name;
+    }
   }
   if (isNew("recording", read)) {
     designs.record(read ? read.result.runs : []);
@@ -141,7 +159,8 @@ function paintContents() {
 // Long work: each as far as the program says it is.
 function paintTasks({ tasks: known, artefacts }) {
   for (const [task, { is, progress, said, took_s: took }] of Object.entries(known)) {
-    const name = task === "diagnosis" ? "verdict" : task, made = store.contents[name];
+    const name = task === "diagnosis" ? "verdict" : task,
+      made = store.contents[name];
     if (isNew(`result of ${task}`, made) && made) tasks.done({ task, result: made.result });
     if (isNew(`state of ${task}`, JSON.stringify(known[task]))) {
       if (is === "running") tasks.progress({ task, ...progress });
@@ -160,16 +179,28 @@ function paintMarks({ artefacts }) {
     ? `Force, charge and voltage are estimated; curves and other numbers are ${whose}`
     : `The numbers and curves are still ${whose}`;
   for (const [name, place] of Object.entries(MARKED)) find(place).classList.toggle("stale", isOld(name));
-  const name = tab.influences, place = find("#influences"), old = name && isOld(name);
+  const name = tab.influences,
+    place = find("#influences"),
+    old = name && isOld(name);
   place.classList.toggle("stale", Boolean(old));
   if (!isNew("mark of influences", old ? store.before(name) : "") && place.querySelector(".before")) return;
   for (const mark of place.querySelectorAll(".before")) mark.remove();
-  if (old) place.prepend(element("p", { class: "before" }, `${store.before(name)} `, element("button", { type: "button", onclick: () => ask({ do: "start", task: name }) }, "Make it anew")));
+  if (old)
+    place.prepend(
+      element(
+        "p",
+        { class: "before" },
+        `${store.before(name)} `,
+        element("button", { type: "button", onclick: () => ask({ do: "start", task: name }) }, "Make it anew"),
+      ),
+    );
 }
 
 function paintLink() {
   const { state, link } = store;
-  const kept = store.unsent.length ? "your last change is kept in this page and is sent when it answers" : "nothing can be changed until it does";
+  const kept = store.unsent.length
+    ? "your last change is kept in this page and is sent when it answers"
+    : "nothing can be changed until it does";
   const words = {
     starting: "starting…",
     open: state && state.saved !== true ? state.saved : "on this machine only; every change is saved",
@@ -178,7 +209,10 @@ function paintLink() {
     elsewhere: "this design is open in another tab, where it goes on",
   };
   find("#link").textContent = words[link] + (link === "open" && state && state.machine ? ` – ${state.machine}` : "");
-  find("#link").classList.toggle("bad", link !== "open" && link !== "starting" || Boolean(state && state.saved !== true));
+  find("#link").classList.toggle(
+    "bad",
+    (link !== "open" && link !== "starting") || Boolean(state && state.saved !== true),
+  );
   find("#design").inert = ["lost", "ended", "elsewhere"].includes(link);
 }
 
@@ -202,8 +236,9 @@ function hear(told) {
   } else if (told.tell === "elsewhere") store.link = "elsewhere";
   else if (told.tell === "said") say(told.text, told.bad);
   else if (told.tell === "form") {
-    find("#plate select").replaceChildren(...told.standards.map((one) => element("option", { value: one.name }, one.name)));
-    find("#plate select").value = "marburg-medium";
+    find("#plate select").replaceChildren(
+      ...told.standards.map((one) => element("option", { value: one.name }, one.name)),
+    );
     tab.painted.check = undefined;
     start.hearForm(told);
   } else if (told.tell === "earlier") start.hearEarlier(told.designs);
@@ -215,12 +250,13 @@ function hear(told) {
 async function socketAddress() {
   const own = address("/socket") + (isCopy && !tab.hasOpened ? "&copy=1" : "");
   if (!tab.hasOpened || !window.crypto.subtle) return own;
-  const bytes = (text) => new TextEncoder().encode(text), hex = (found) => [...new Uint8Array(found)].map((one) => one.toString(16).padStart(2, "0")).join("");
+  const bytes = (text) => new TextEncoder().encode(text),
+    hex = (found) => [...new Uint8Array(found)].map((one) => one.toString(16).padStart(2, "0")).join("");
   const secret = await crypto.subtle.importKey("raw", bytes(key), { name: "HMAC", hash: "SHA-256" }, false, ["sign"]);
   const proof = async (text) => hex(await crypto.subtle.sign("HMAC", secret, bytes(text)));
   const nonce = hex(crypto.getRandomValues(new Uint8Array(16)));
   const greeting = await (await fetch(`/greeting?nonce=${nonce}`)).json();
-  if (greeting.proof !== await proof(`studio:${nonce}`)) throw new Error("another program answers");
+  if (greeting.proof !== (await proof(`studio:${nonce}`))) throw new Error("another program answers");
   const answer = await proof(`tab:${greeting.question}`);
   return `/socket?tab=${encodeURIComponent(tab.name)}&question=${greeting.question}&proof=${answer}`;
 }
@@ -261,27 +297,43 @@ window.addEventListener("pagehide", () => sessionStorage.removeItem("open"));
 function typing() {
   const text = find("#text");
   let later = null;
-  const send = () => { delete text.dataset.dirty; if (store.state && text.value !== store.state.design.text) ask({ do: "text", text: text.value }); };
-  text.addEventListener("input", () => { text.dataset.dirty = "yes"; clearTimeout(later); later = setTimeout(send, 500); });
+  const send = () => {
+    delete text.dataset.dirty;
+    if (store.state && text.value !== store.state.design.text) ask({ do: "text", text: text.value });
+  };
+  text.addEventListener("input", () => {
+    text.dataset.dirty = "yes";
+    clearTimeout(later);
+    later = setTimeout(send, 500);
+  });
   text.addEventListener("change", send);
 }
 
 function files() {
   const input = find("#import-file");
   const open = async (file) => {
-    if (file.size > 200000) return say(`'${file.name}' has ${(file.size / 1e6).toFixed(1)} MB: a design is a small TOML file.`, true);
+    if (file.size > 200000)
+      return say(`'${file.name}' has ${(file.size / 1e6).toFixed(1)} MB: a design is a small TOML file.`, true);
     return ask({ do: "text", text: await file.text() });
   };
   find("#import").addEventListener("click", () => input.click());
-  input.addEventListener("change", () => { if (input.files[0]) open(input.files[0]); input.value = ""; });
+  input.addEventListener("change", () => {
+    if (input.files[0]) open(input.files[0]);
+    input.value = "";
+  });
   find("#export").addEventListener("click", () => {
-    const made = URL.createObjectURL(new Blob([store.state ? store.state.design.text : ""], { type: "application/toml" }));
+    const made = URL.createObjectURL(
+      new Blob([store.state ? store.state.design.text : ""], { type: "application/toml" }),
+    );
     element("a", { href: made, download: "design.toml" }).click();
     setTimeout(() => URL.revokeObjectURL(made), 1000);
   });
   const design = find("#design");
   design.addEventListener("dragover", (event) => event.preventDefault());
-  design.addEventListener("drop", (event) => { event.preventDefault(); if (event.dataTransfer.files[0]) open(event.dataTransfer.files[0]); });
+  design.addEventListener("drop", (event) => {
+    event.preventDefault();
+    if (event.dataTransfer.files[0]) open(event.dataTransfer.files[0]);
+  });
 }
 
 function buttons() {
@@ -292,20 +344,41 @@ function buttons() {
   document.addEventListener("change", (event) => typed.delete(event.target), true);
   document.addEventListener("keydown", (event) => {
     if (!(event.ctrlKey || event.metaKey) || typed.has(event.target) || event.target.matches("textarea")) return;
-    const name = event.key.toLowerCase() === "z" ? (event.shiftKey ? "redo" : "undo") : event.key === "y" ? "redo" : null;
-    if (name) { event.preventDefault(); ask({ do: name }); }
+    const name =
+      event.key.toLowerCase() === "z" ? (event.shiftKey ? "redo" : "undo") : event.key === "y" ? "redo" : null;
+    if (name) {
+      event.preventDefault();
+      ask({ do: name });
+    }
   });
   find("#press .cancel").addEventListener("click", () => ask({ do: "cancel", task: "press" }));
-  find("#press .again").addEventListener("click", () => { ask({ do: "press" }); });
-  for (const one of document.querySelectorAll("[data-start]")) one.addEventListener("click", () => ask({ do: "start", task: one.dataset.start }));
-  find("#plate button").addEventListener("click", () => ask({ do: "start", task: "plate", kind: "text", text: find("#plate input").value, standard: find("#plate select").value }));
-  find("#keep").addEventListener("submit", (event) => { event.preventDefault(); ask({ do: "keep", name: find("#keep input").value }); find("#keep input").value = ""; });
+  find("#press .again").addEventListener("click", () => {
+    ask({ do: "press" });
+  });
+  for (const one of document.querySelectorAll("[data-start]"))
+    one.addEventListener("click", () => ask({ do: "start", task: one.dataset.start }));
+  find("#plate button").addEventListener("click", () =>
+    ask({
+      do: "start",
+      task: "plate",
+      kind: "text",
+      text: find("#plate input").value,
+      standard: find("#plate select").value,
+    }),
+  );
+  find("#keep").addEventListener("submit", (event) => {
+    event.preventDefault();
+    ask({ do: "keep", name: find("#keep input").value });
+    find("#keep input").value = "";
+  });
   find("#every").addEventListener("change", (event) => {
     find("#form").classList.toggle("every", event.target.checked);
     tidy(find("#form"));
   });
   find("#begin").addEventListener("click", () => start.open());
-  find("#said button").addEventListener("click", () => { find("#said").hidden = true; });
+  find("#said button").addEventListener("click", () => {
+    find("#said").hidden = true;
+  });
   find("#find").addEventListener("input", (event) => filter(find("#form"), event.target.value));
   find("#form").addEventListener("submit", (event) => event.preventDefault());
 }

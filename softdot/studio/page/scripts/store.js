@@ -6,7 +6,8 @@
 // link: "starting", "open", "lost" or "ended".
 
 const CHANGES = new Set(["set", "change", "text"]);
-const same = (one, other) => one.do === "set" && other.do === "set" && JSON.stringify(one.key) === JSON.stringify(other.key);
+const same = (one, other) =>
+  one.do === "set" && other.do === "set" && JSON.stringify(one.key) === JSON.stringify(other.key);
 
 export class Store {
   // storage: as sessionStorage; what is not sent yet is kept there and outlives a reload.
