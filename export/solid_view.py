@@ -64,6 +64,7 @@ def press_view(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape) -> V
         place[used] = np.arange(len(used))
         triangles, tets = place[triangles[:, :3]], tets.reshape(-1, 4)
     kept = _last_steps(len(chosen), len(used))
+    shown = np.ix_(np.array(kept), used)
     names = tet_mesh.region_names
     return {
         "steps": [step_caption(chosen[k]) for k in kept],
@@ -74,8 +75,8 @@ def press_view(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape) -> V
         "region": np.asarray(nodes.split.region[used], np.uint8),
         "triangles": np.asarray(triangles, np.uint32),
         "tets": np.asarray(tets, np.uint32),
-        **displacement_steps(nodes.displacement_mm[np.ix_(kept, used)]),
-        **_fields(nodes, np.ix_(kept, used), names.index("film"), result),
+        **displacement_steps(nodes.displacement_mm[shown]),
+        **_fields(nodes, shown, names.index("film"), result),
         **_dot(tet_mesh, [chosen[k] for k in kept], dot_shape),
     }
 
@@ -157,7 +158,7 @@ def _parts(names: Sequence[str]) -> View:
 
 
 def _outward(corners: Floats) -> Floats:
-    """Corners (3 k, 3) of a closed surface, turned where its triangles face inwards: the frame of the dot is mirrored."""
+    """Corners (3 k, 3) of a closed surface, turned where they face inwards: the frame of the dot is mirrored."""
     a, b, c = corners.reshape(-1, 3, 3).transpose(1, 0, 2)
     volume = np.einsum("ij,ij->", a, np.cross(b, c))
     return corners if volume > 0 else corners.reshape(-1, 3, 3)[:, ::-1].reshape(-1, 3)

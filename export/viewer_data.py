@@ -65,6 +65,7 @@ def spread_steps(count: int) -> list[int]:
 
 
 def step_caption(step: Step) -> dict[str, float]:
+    """Depth in mm and force in N of a step."""
     return {"indentation": step.indentation_m * MM_PER_M, "force": step.reaction_force_N}
 
 
@@ -116,7 +117,7 @@ def _field_arrays(skins: list[Skin], tet_mesh: TetMesh, peak: FilmPeak) -> dict[
 
 
 def field_tops(soft_stress_MPa: Floats, pressure_MPa: Floats, peak: FilmPeak) -> dict[str, float]:
-    """The largest value that is shown of each field. soft_stress_MPa : of the parts beside the film at the last step."""
+    """The largest value that is shown of each field. soft_stress_MPa : at the last step, without the film."""
     return {
         "stress": float(np.percentile(soft_stress_MPa, 99)) or 1.0,
         "strain": peak.strain or 1.0,
@@ -153,6 +154,7 @@ def triangle_corners(surfaces: Sequence[Any]) -> NDArray[np.float64]:
 
 
 def byte_shares(values: NDArray[np.float64], top: float) -> NDArray[np.float64]:
+    """Whole numbers from 0 to 255, of values from 0 to top."""
     return np.asarray(np.round(255 * np.clip(values / top, 0, 1)))
 
 

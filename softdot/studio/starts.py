@@ -14,7 +14,8 @@ STARTS = (
     ("softdot.studio", "array-cell", "An array", "Six segments under a Braille cell."),
 )
 """Package, file, title and sentence of each."""
-OWN_SIZE_MM = 0.8
+OWN_SIZE = 0.8
+"""Of the segment: the width of an effector that does not state one."""
 
 
 def starts() -> list[dict[str, Any]]:
@@ -50,9 +51,9 @@ def _effector(segment: Mapping[str, Any]) -> dict[str, Any] | None:
     stated = segment.get("effector")
     if not stated:
         return None
-    whole = segment["length_mm"]
-    width = {"layer": whole, "block": stated.get("length_mm")}.get(stated["shape"], stated.get("diameter_mm"))
-    return {"shape": stated["shape"], "width": float(width or OWN_SIZE_MM * whole), "height": float(stated["height_mm"])}
+    shape, whole = stated["shape"], segment["length_mm"]
+    width = whole if shape == "layer" else stated.get("length_mm" if shape == "block" else "diameter_mm")
+    return {"shape": shape, "width": float(width or OWN_SIZE * whole), "height": float(stated["height_mm"])}
 
 
 def _can_be_drawn(found: Mapping[str, Any]) -> bool:

@@ -121,8 +121,13 @@ export class Bodies {
       this.low[i % 3] = Math.min(this.low[i % 3], data.points[i]);
       this.high[i % 3] = Math.max(this.high[i % 3], data.points[i]);
     }
-    this.step = data.steps.length - 1;
-    this.update();
+  }
+
+  // The section stays inside the body.
+  settle(at) {
+    const axis = this.section.axis === "x" ? 0 : 1,
+      inset = 1e-4 * (this.high[axis] - this.low[axis]);
+    this.section.at = Math.min(this.high[axis] - inset, Math.max(this.low[axis] + inset, at));
   }
 
   replace(mesh, made) {

@@ -8,7 +8,8 @@ import { colourBar, drawMarks, legend } from "./marks.js";
 // Room beside the body for what is written there, in px.
 const ROOM = { left: 12, right: 136, top: 34, bottom: 52 },
   ROOM_OF_BAR = 34;
-const TICK_MS = 400;
+const TICK_MS = 400,
+  REST_MS = 60;
 const spoken = (value) => String(Number(value.toPrecision(3)));
 
 export class View {
@@ -42,11 +43,9 @@ export class View {
   show(data) {
     this.data = data;
     if (!this.renderer) return;
-    const { bodies } = this,
-      moved = bodies.moved;
+    const { bodies } = this;
     bodies.load(data);
-    if (!moved) this.place((bodies.low[1] + bodies.high[1]) / 2 + 1e-4 * (bodies.high[1] - bodies.low[1]));
-    if (!moved && data.plane > bodies.low[1] && data.plane < bodies.high[1]) this.place(data.plane);
+    bodies.settle(bodies.isMoved ? bodies.section.at : this.middle());
     const parts = [...data.names.map((name, i) => [name, data.colours[i]]), ["dot", data.dotColour]];
     legend(this.find(".legend"), parts.reverse(), bodies.hidden, (name) => this.toggle(name));
     const slider = this.find(".step");
@@ -81,13 +80,17 @@ export class View {
     this.draw();
   }
 
-  // Where the section is; it stays inside the body.
+  // Where a section begins: under the dot, or in the middle where the dot is beside the body.
+  middle() {
+    const { low, high, section } = this.bodies,
+      axis = section.axis === "x" ? 0 : 1;
+    const under = axis === 1 && this.data.plane > low[1] && this.data.plane < high[1];
+    return under ? this.data.plane : (low[axis] + high[axis]) / 2;
+  }
+
   place(at) {
-    const { bodies } = this,
-      axis = bodies.section.axis === "x" ? 0 : 1,
-      inset = 1e-4 * (bodies.high[axis] - bodies.low[axis]);
-    bodies.section.at = Math.min(bodies.high[axis] - inset, Math.max(bodies.low[axis] + inset, at));
-    bodies.cut();
+    this.bodies.settle(at);
+    this.bodies.cut();
     this.draw();
   }
 
@@ -235,9 +238,8 @@ export class View {
       if (this.camera.isFitted) this.fit();
     });
     find(".section").addEventListener("change", (event) => {
-      bodies.section.axis = event.target.value;
-      const axis = event.target.value === "x" ? 0 : 1;
-      if (this.data) this.place(axis === 1 ? this.data.plane : (bodies.low[0] + bodies.high[0]) / 2);
+      Object.assign(bodies, { section: { axis: event.target.value, at: 0 }, isMoved: false });
+      if (this.data) this.place(this.middle());
     });
   }
 
@@ -276,7 +278,7 @@ export class View {
     handle.addEventListener("pointermove", (event) => {
       if (!held) return;
       const [x, y] = along();
-      bodies.moved = true;
+      bodies.isMoved = true;
       this.place(held[2] + (event.clientX - held[0]) * x + (event.clientY - held[1]) * y);
     });
     for (const kind of ["pointerup", "pointercancel"])
@@ -287,7 +289,7 @@ export class View {
       const way = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
       if (!way) return;
       const axis = bodies.section.axis === "x" ? 0 : 1;
-      bodies.moved = true;
+      bodies.isMoved = true;
       this.place(bodies.section.at + (way * (bodies.high[axis] - bodies.low[axis])) / 40);
       event.preventDefault();
     });
@@ -311,11 +313,11 @@ export class View {
     event.preventDefault();
   }
 
-  // The name and value of what is under the mouse, once it rests for a frame.
+  // The name and value of what is under the mouse, once it rests.
   hover(event) {
-    if (event.buttons || !this.data || this.asking) return;
-    this.asking = requestAnimationFrame(() => {
-      this.asking = null;
+    clearTimeout(this.asking);
+    if (event.buttons || !this.data) return;
+    this.asking = setTimeout(() => {
       const box = this.canvas.getBoundingClientRect(),
         place = this.find(".hover"),
         { shown } = this.bodies;
@@ -327,6 +329,6 @@ export class View {
       place.textContent = met ? met.name + value : "";
       place.style.left = `${Math.min(x + 14, box.width - 120)}px`;
       place.style.top = `${y + 10}px`;
-    });
+    }, REST_MS);
   }
 }
