@@ -102,6 +102,7 @@ function draw() {
   find("#array .map").replaceChildren(segments({ places, dots, size: layout.size_mm, half: layout.half_mm }));
   const what = now && now.amplified ? "at the amplifiers" : "at open circuit";
   find("#array figcaption").textContent = now
-    ? `Voltages ${what}, ${short(now.depth_mm)} mm deep with ${short(now.force_N)} N; rings are the raised dots. On large elements, some percent off.${now.failure ? ` Not converged: ${now.failure}.` : ""}`
+    ? `Voltages ${what}, ${short(now.depth_mm)} mm deep with ${short(now.force_N)} N; rings are the raised dots. ` +
+      `On large elements, some percent off.${now.failure ? ` Not converged: ${now.failure}.` : ""}`
     : "The array from above; rings are the raised dots. The voltages follow the press.";
 }

@@ -19,7 +19,7 @@ export const FIELDS = {
   pressure: { name: "contact pressure", unit: "MPa", factor: 1, on: (part, film, top) => part === top },
 };
 
-// Flat normals come from screen derivatives. A back face is seen only where a section opens a part: it is filled plainly.
+// Flat normals come from screen derivatives. A back face is seen only where a section opens a part: it is filled.
 const VERTEX = `
   attribute vec3 rest; attribute vec4 paint; attribute float part;
   uniform vec3 move;

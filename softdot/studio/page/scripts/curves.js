@@ -114,7 +114,8 @@ class Plot {
     this.chart.setAttribute(
       "aria-label",
       now
-        ? `${this.quantity.title}: ${short(last(now.y))} ${this.quantity.unit} at ${short(last(now.x))} ${across}; arrow keys go along the curve, Enter plays it`
+        ? `${this.quantity.title}: ${short(last(now.y))} ${this.quantity.unit} at ${short(last(now.x))} ${across}; ` +
+            "arrow keys go along the curve, Enter plays it"
         : this.quantity.title,
     );
     this.draw();

@@ -10,6 +10,11 @@ const DASHES = [
 ];
 const last = (values) => (values && values.length ? values[values.length - 1] : null);
 
+const answer = (numbers) =>
+  [quantity(last(numbers.open_circuit_voltage_V), "V"), quantity(last(numbers.reaction_force_N), "N")].join(
+    ", ",
+  );
+
 function patch(paint) {
   const made = element("span", { class: "patch" });
   made.style.background = `var(${paint})`;
@@ -120,13 +125,7 @@ export class Designs {
           button("Use", "Go on with", () => this.ask({ do: "take", number: one.number })),
           button(one.hidden ? "Show" : "Hide", "Hide or show", () => this.toggle(one)),
           button("×", "Delete", () => this.ask({ do: "drop", number: one.number })),
-          element(
-            "p",
-            { class: "found" },
-            one.numbers
-              ? `${quantity(last(numbers.open_circuit_voltage_V), "V")}, ${quantity(last(numbers.reaction_force_N), "N")}`
-              : "not pressed yet",
-          ),
+          element("p", { class: "found" }, one.numbers ? answer(numbers) : "not pressed yet"),
         );
       }),
     );

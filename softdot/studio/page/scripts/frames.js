@@ -1,4 +1,5 @@
-// Messages of the program: JSON, or a binary frame whose arrays are looked at where they lie (softdot/studio/frames.py).
+// Messages of the program: JSON, or a binary frame whose arrays are looked at where they lie
+// (softdot/studio/frames.py).
 const KINDS = { float32: Float32Array, int16: Int16Array, uint8: Uint8Array, uint32: Uint32Array };
 const ALIGNED = 8;
 

@@ -136,7 +136,8 @@ function paintContents() {
   const { curves: pressed, circuit, array: cells, kept, recording: read, verdict } = store.contents;
   const now = pressed && pressed.curves[pressed.curves.length - 1], { estimate } = store.state;
   if (isNew("curves", pressed) && now) designs.present(now);
-  if (isNew("numbers", pressed && JSON.stringify([estimate, pressed.revision, now.quality, now.numbers])) && now) result.show(now, estimate);
+  const numbers = now && JSON.stringify([estimate, pressed.revision, now.quality, now.numbers]);
+  if (isNew("numbers", numbers) && now) result.show(now, estimate);
   if (isNew("circuit", circuit) && circuit) result.circuit(circuit.found);
   if (isNew("array", cells) && cells) array.show(cells.pressed);
   if (isNew("kept", kept) && kept) designs.hear(kept);
@@ -197,6 +198,7 @@ function paintMarks({ artefacts }) {
 }
 
 function paintLink() {
+  const left = store.unsent.length ? "Your last change is kept in this page." : "";
   const { state, link } = store;
   const kept = store.unsent.length
     ? "your last change is kept in this page and is sent when it answers"
@@ -205,7 +207,7 @@ function paintLink() {
     starting: "starting…",
     open: state && state.saved !== true ? state.saved : "on this machine only; every change is saved",
     lost: `softdot studio does not answer; ${kept}`,
-    ended: `softdot studio has ended; start it again on the same port, then load this page. ${store.unsent.length ? "Your last change is kept in this page." : ""}`,
+    ended: `softdot studio has ended; start it again on the same port, then load this page. ${left}`,
     elsewhere: "this design is open in another tab, where it goes on",
   };
   find("#link").textContent = words[link] + (link === "open" && state && state.machine ? ` – ${state.machine}` : "");
@@ -245,8 +247,8 @@ function hear(told) {
   if (["state", "form", "elsewhere"].includes(told.tell)) paint();
 }
 
-// The address of the socket. Where this tab comes back, another program may listen on the port by now: the program shows
-// that it holds the key, and so does the tab, and neither sends it. A page that is not local has no way to do so.
+// The address of the socket. Where this tab comes back, another program may listen on the port by now: the program
+// shows that it holds the key, and so does the tab, and neither sends it. A page that is not local has no way to do so.
 async function socketAddress() {
   const own = address("/socket") + (isCopy && !tab.hasOpened ? "&copy=1" : "");
   if (!tab.hasOpened || !window.crypto.subtle) return own;

@@ -42,7 +42,8 @@ export function warnings(state, late, ask) {
 export function cost(state) {
   const found = state.cost;
   find("#cost").textContent = found
-    ? `The report presses about ${found.tetrahedra.toLocaleString("en")} elements, in about ${duration(found.time_s)} and ${found.memory_GB} GB.`
+    ? `The report presses about ${found.tetrahedra.toLocaleString("en")} elements, ` +
+      `in about ${duration(found.time_s)} and ${found.memory_GB} GB.`
     : "";
 }
 

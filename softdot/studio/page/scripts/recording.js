@@ -49,7 +49,8 @@ async function send(files, address, say) {
     );
   if (total > MOST_MB)
     return say(
-      `This recording has ${total.toFixed(0)} MB, at most ${MOST_MB} MB are read here; thin it out, or use softdot diagnose.`,
+      `This recording has ${total.toFixed(0)} MB, at most ${MOST_MB} MB are read here; ` +
+        "thin it out, or use softdot diagnose.",
       true,
     );
   const head = JSON.stringify(wanted.map(([name, file]) => [name, file.size])) + "\n";
@@ -134,7 +135,8 @@ export function show(result, ask, units) {
     element(
       "p",
       {},
-      `A recording of ${result.of}: ${result.runs.length} run${result.runs.length === 1 ? "" : "s"}. The coloured bands are approach, loading, hold, unloading and after.`,
+      `A recording of ${result.of}: ${result.runs.length} run${result.runs.length === 1 ? "" : "s"}. ` +
+        "The coloured bands are approach, loading, hold, unloading and after.",
     ),
     ...result.warnings.map((one) => element("p", { class: "soft" }, `warning: ${one}`)),
     element("div", { class: "row" }, start(true), start(false)),

@@ -81,6 +81,8 @@ export function show({ numbers, quality }, estimate) {
   find("#numbers").replaceChildren(...cards.map(made));
 }
 
+const volts = (value) => quantity(value, "V", null, CIRCUIT_DIGITS);
+
 export function circuit(found) {
   const place = find("#circuit .answer");
   if (!found) {
@@ -95,7 +97,7 @@ export function circuit(found) {
     element(
       "p",
       {},
-      `At full load ${quantity(last(found.readout_voltage_V), "V", null, CIRCUIT_DIGITS)}; largest over the press ${quantity(most, "V", null, CIRCUIT_DIGITS)}.`,
+      `At full load ${volts(last(found.readout_voltage_V))}; largest over the press ${volts(most)}.`,
     ),
     channel({ ...at, width: 560, height: 170 }),
   );

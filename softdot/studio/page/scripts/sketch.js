@@ -47,10 +47,11 @@ export function sketch(sizes, { width, height } = ROOM) {
     layer(upper, medium1 * scale, "medium1");
     if (top) svg.append(effector(top, middle, upper, scale));
     const head = upper - (top ? top.height * scale : 0),
-      radius = 0.22 * length * scale;
+      radius = 0.22 * length * scale,
+      crown = head - dot * scale;
     svg.append(
       node("path", {
-        d: `M${middle - radius} ${head - dot * scale}A${radius} ${0.95 * dot * scale} 0 0 0 ${middle + radius} ${head - dot * scale}Z`,
+        d: `M${middle - radius} ${crown}A${radius} ${0.95 * dot * scale} 0 0 0 ${middle + radius} ${crown}Z`,
         fill: COLOURS.dot,
       }),
     );

@@ -3,8 +3,10 @@ import { element, find } from "./dom.js";
 import { labelled, sketch } from "./sketch.js";
 
 const WHAT = [
-  "A soft block holds a piezoelectric film between two elastic media. A raised Braille dot presses into the block from above, the media bend the film, and the strained film frees a charge: a voltage that tells where a dot is.",
-  "Here you change such a sensor by hand, see its parts at once, and get force, charge and voltage of a press some seconds later, as softdot run calculates them, with how far each can be trusted.",
+  "A soft block holds a piezoelectric film between two elastic media. A raised Braille dot presses into the block " +
+    "from above, the media bend the film, and the strained film frees a charge: a voltage that tells where a dot is.",
+  "Here you change such a sensor by hand, see its parts at once, and get force, charge and voltage of a press some " +
+    "seconds later, as softdot run calculates them, with how far each can be trusted.",
 ];
 const DOCUMENTS = "docs/studio.md of softdot explains this page, docs/tutorial.md is a tour of ten minutes.";
 const RECORDING =
