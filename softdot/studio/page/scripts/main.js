@@ -175,7 +175,8 @@ function paintTasks({ tasks: known, artefacts }) {
 function paintMarks({ artefacts }) {
   const isOld = (name) => Boolean(artefacts[name] && !artefacts[name].current);
   find("#before").hidden = !isOld("numbers");
-  const whose = `those of a design before: ${artefacts.numbers ? artefacts.numbers.what : ""}.`;
+  const other = `a design before: ${artefacts.numbers ? artefacts.numbers.what : ""}`;
+  const whose = `those of ${store.state.design.mistakes.length ? "the last design without a mistake" : other}.`;
   find("#before").textContent = store.state.estimate
     ? `Force, charge and voltage are estimated; curves and other numbers are ${whose}`
     : `The numbers and curves are still ${whose}`;

@@ -42,7 +42,7 @@ export class StartPage {
 
   open() {
     this.place.hidden = false;
-    find("main").hidden = true;
+    for (const other of ["main", "nav"]) find(other).hidden = true;
     this.draw();
     const go = this.place.querySelector(".go");
     if (go) go.focus();
@@ -50,7 +50,7 @@ export class StartPage {
 
   close() {
     this.place.hidden = true;
-    find("main").hidden = false;
+    for (const other of ["main", "nav"]) find(other).hidden = false;
     window.dispatchEvent(new Event("resize"));
   }
 
