@@ -189,6 +189,7 @@ export class Bodies {
     }
     for (const mesh of this.dots) mesh.visible = !this.hidden.dot && (!this.shown || this.field === "stress");
     this.face.visible = there && data.tets.length > 0;
+    this.parts.material.uniforms.capped.value = this.face.visible ? 0 : 1; // the face of the section fills it
     if (!this.face.visible) return;
     const { position, paint } = this.parts.geometry.attributes;
     const made = sliced(data, position.array, paint.array, axis, section.at, gone);
