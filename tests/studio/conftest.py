@@ -94,7 +94,7 @@ class Tab:
         self.page.on("pageerror", lambda error: self.wrong.append(str(error)))
         self.page.on("console", self._hear)
         self.page.goto(address)
-        self.page.locator("#form .field").first.wait_for()
+        self.page.locator("#form .field").first.wait_for(timeout=120_000)
 
     def _hear(self, said: Any) -> None:
         """An error; that a studio which has ended does not answer is none."""
