@@ -100,7 +100,7 @@ function paintDesign({ design }) {
   if (document.activeElement !== text || !text.dataset.dirty) text.value = design.text;
   for (const name of ["undo", "redo", "reset"]) find(`#${name}`).disabled = !design[name];
   const isChecked = design.is_checked || !tab.isBuilt; // before, its form is as the hand has left it
-  if (!isChecked || !isNew("check", `${design.of} ${JSON.stringify(late())}`)) return;
+  if (!isChecked || !isNew("check", `${design.of} ${design.is_checked} ${JSON.stringify(late())}`)) return;
   paintForm(store.state);
   array.state(design);
   next.mistakes(design, ask);
