@@ -112,7 +112,7 @@ function paintDesign({ design }) {
   if (isNew("lines", design.text + JSON.stringify(design.mistakes))) editor.mark(design.mistakes);
   for (const name of ["undo", "redo", "reset"]) find(`#${name}`).disabled = !design[name];
   const isChecked = design.is_checked || !tab.isBuilt; // before, its form is as the hand has left it
-  if (!isChecked || !isNew("check", `${design.of} ${Boolean(design.values)} ${JSON.stringify(late())}`)) return;
+  if (!isChecked || !isNew("check", `${design.of} ${design.is_checked} ${JSON.stringify(late())}`)) return;
   paintForm(store.state);
   array.state(design);
   next.mistakes(design, ask);
