@@ -1,6 +1,8 @@
 """How the page looks and what it answers to mouse, keys and ears: sizes, the 3D view, the curves, the start page."""
 
 import csv
+import hashlib
+from pathlib import Path
 
 import pytest
 
@@ -174,3 +176,14 @@ def test_every_start_is_a_design_without_mistakes():
         assert one["sizes"]["medium2"] == 2.0
     assert starts()[0]["text"] == start_text(None)
     assert [sizes(text) for text in ("[", "segment = 1", "[segment]\nlength_mm = -1")] == [None, None, None]
+
+
+def test_files_of_others_are_those_that_are_named():
+    """By their checksums; an example is the design of the start page."""
+    root = Path(__file__).parents[2]
+    vendor = root / "softdot" / "studio" / "page" / "vendor"
+    listed = (vendor / "README.txt").read_text("utf-8").split("SHA-256:\n")[1].splitlines()
+    named = {name: found for found, name in (line.split() for line in listed)}
+    held = {file.name for file in vendor.iterdir() if not file.name.endswith(".txt")}
+    assert named == {name: hashlib.sha256((vendor / name).read_bytes()).hexdigest() for name in held}
+    assert starts()[3]["text"] == (root / "examples" / "array-cell.toml").read_text("utf-8")
