@@ -149,7 +149,7 @@ function paintContents() {
     }
   }
   if (isNew("recording", read)) {
-    designs.record(read ? read.result.runs : []);
+    designs.record(read && read.result.of !== "a coupon" ? read.result.runs : []); // a strip is not pressed
     if (read && store.form) recording.show(read.result, ask, store.form.units);
     else find("#recording").replaceChildren();
     tab.painted.verdict = undefined;
