@@ -70,7 +70,7 @@ def test_three_sliders_change_the_curves_to_the_numbers_of_a_run(studio, open_ta
     tab.page.get_by_role("button", name="Keep this design").click()
     for key, steps in zip(SLIDERS, (-12, 8, -4), strict=True):
         slide(tab, key, steps)
-    until(lambda: getattr(tab, "presses", 0) >= 2 and not tab.page.locator("#before").is_visible(), 90.0)
+    until(lambda: not tab.page.locator("#before").is_visible() and tab.presses >= 2, 90.0)
     tab.pressed()
     assert [last_point(tab, number) for number in range(3)] != before
     text = tab.text
