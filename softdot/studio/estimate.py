@@ -1,7 +1,7 @@
 """Force, charge and voltage of a design from those of a similar one that was pressed, to first order in logarithms.
 
-Each is that of the press times (x / x0)^p over all numbers x that differ, where p = d ln F / d ln x at the press: a line
-in logarithms, which holds over larger shifts than one in the numbers.
+Each is that of the press times (x / x0)^p over all numbers x that differ, where p = d ln F / d ln x at the press: a
+line in logarithms, which holds over larger shifts than one in the numbers.
 """
 
 from collections.abc import Mapping
