@@ -147,7 +147,8 @@ function paintEstimate({ estimate }) {
   if (!place.isConnected) find("#before").before(place);
   place.hidden = !estimate;
   if (!estimate) return;
-  const one = (name, unit) => `${short(estimate[name].value)} ± ${Number(estimate[name].error.toPrecision(2))} ${unit}`;
+  const error = (name) => Number(estimate[name].error.toPrecision(2));
+  const one = (name, unit) => `${short(estimate[name].value)} ± ${error(name)} ${unit}`;
   place.textContent = `Estimate: ${one("force_N", "N")}, ${one("charge_pC", "pC")}, ${one("voltage_V", "V")}.`;
 }
 
@@ -198,7 +199,7 @@ function paintLink() {
     starting: "starting…",
     open: state && state.saved !== true ? state.saved : "on this machine only; every change is saved",
     lost: `softdot studio does not answer; ${kept}`,
-    ended: `softdot studio has ended; start it again on the same port, then load this page. ${store.unsent.length ? "Your last change is kept in this page." : ""}`,
+    ended: `softdot studio has ended; ${kept}. Start it again, and this page goes on.`,
     elsewhere: "this design is open in another tab, where it goes on",
   };
   find("#link").textContent = words[link] + (link === "open" && state && state.machine ? ` – ${state.machine}` : "");
@@ -246,8 +247,8 @@ function paintEarlier(designs) {
   );
 }
 
-// The address of the socket. Where this tab comes back, another program may listen on the port by now: the program shows
-// that it holds the key, and so does the tab, and neither sends it. A page that is not local has no way to do so.
+// The address of the socket. Where this tab comes back, another program may listen on the port by now: the program
+// shows that it holds the key, and so does the tab, and neither sends it. A page that is not local has no way to do so.
 async function socketAddress() {
   const own = address("/socket") + (isCopy && !tab.hasOpened ? "&copy=1" : "");
   if (!tab.hasOpened || !window.crypto.subtle) return own;

@@ -1,8 +1,8 @@
 // What the program has told: one place that every panel reads. It knows no page, so that it can be tested without one.
 //
 // state: the last message {"tell": "state"}, whole: phase, sentence, design, artefacts, tasks, kept (docs/studio.md).
-// contents: the last message of each artefact (curves, view, parts, circuit, array, kept, influences, kit, ...), each with
-// the revision of its design; whether it is of the present design is said by state.artefacts[name].current alone.
+// contents: the last message of each artefact (curves, view, parts, circuit, array, kept, influences, kit, ...), each
+// with the revision of its design; whether it is of the present design is said by state.artefacts[name].current alone.
 // link: "starting", "open", "lost" or "ended".
 
 const CHANGES = new Set(["set", "change", "text"]);
