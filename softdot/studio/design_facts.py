@@ -59,6 +59,13 @@ class KnownPress:
         force, charge, voltage = (numbers[name][-1] for name in ANSWER)
         return force, charge, voltage
 
+    @property
+    def mesh_errors(self) -> tuple[float, float, float]:
+        """By which shares its mesh may put force, charge and voltage off."""
+        off = self.found["numbers"].get("discretisation_error") or {}
+        force, voltage = (0.01 * (off.get(name) or 0.0) for name in ("force_percent", "voltage_percent"))
+        return force, voltage, voltage
+
 
 @dataclass(frozen=True)
 class Stop:

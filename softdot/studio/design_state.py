@@ -185,9 +185,9 @@ class DesignState:
             found = {**found, "view": before.found.get("view")}
         quality = "array" if "array" in found else found["quality"]
         self._presses[key] = KnownPress(job, label, quality, found, complete, self._next())
-        answer = self._presses[key].answer
-        if complete and answer is not None:
-            self.estimator.learn(key, job.text, job.values or {}, answer)
+        made = self._presses[key]
+        if complete and made.answer is not None:
+            self.estimator.learn(key, job.text, job.values or {}, made.answer, made.mesh_errors)
         while len(self._presses) > MOST_PRESSES:
             self._presses.popitem(last=False)
         self._settle()

@@ -1,6 +1,7 @@
 """Force, charge and voltage of a design from those of a similar one that was pressed, to first order in logarithms.
 
-ln F(x) = ln F(x0) + sum of p_i ln(x_i / x0_i) over the numbers that differ, p_i = d ln F / d ln x_i at x0
+Each is that of the press times (x / x0)^p over all numbers x that differ, where p = d ln F / d ln x at the press: a
+line in logarithms, which holds over larger shifts than one in the numbers.
 """
 
 from collections.abc import Mapping
@@ -15,8 +16,8 @@ QUANTITIES = ("force_N", "charge_pC", "voltage_V")
 WITHOUT_EFFECT = frozenset({"readout", "fabrication", "mesh", "seed"})
 """Tables that change no press, or only how finely it is solved."""
 OF_EXPONENT, OF_CURVATURE = 0.1, 0.5
-"""The error that is told before a press has shown a larger one: exponents, which are those of a coarse mesh, are a
-tenth off, and change by one over a factor of e, so that half the square of the shift is missing."""
+"""The error that is told before a press has shown a larger one: exponents are a tenth off, as other meshes give others,
+and change by one over a factor of e, so that half the square of the shift is missing."""
 FARTHEST = log(2.0)
 """The sum of all shifts (in logarithms) beyond which nothing is estimated."""
 MOST_BASES = 6
@@ -25,11 +26,14 @@ Values = tuple[float, float, float]
 
 @dataclass
 class PressedBeside:
-    """A press from which others are estimated: stated and all values by dotted key, its answer, and its exponents."""
+    """A press from which others are estimated: stated and all values by dotted key, its answer, by which shares its
+    mesh may be off, and its exponents.
+    """
 
     stated: dict[str, Any]
     whole: dict[str, Any]
     answer: Values
+    mesh_errors: Values
     exponents: dict[str, Values] = field(default_factory=dict)
 
 
@@ -45,7 +49,7 @@ class Estimator:
         found = self._bases.get(press_hash)
         return found is not None and bool(found.exponents)
 
-    def learn(self, press_hash: str, text: str, values: Mapping[str, Any], answer: Values) -> None:
+    def learn(self, press_hash: str, text: str, values: Mapping[str, Any], answer: Values, mesh_errors: Values) -> None:
         """An accurate press has answered. What an estimate of it would have missed counts from now on."""
         expected = self.estimate(text)
         if expected is not None and press_hash not in self._bases:
@@ -56,7 +60,7 @@ class Estimator:
             )
             self._scale = max(self._scale, *ratios, 1.0)
         before = self._bases.pop(press_hash, None)
-        made = PressedBeside(dotted(parse_toml(text, "design")), dotted(values), answer)
+        made = PressedBeside(dotted(parse_toml(text, "design")), dotted(values), answer, mesh_errors)
         made.exponents = before.exponents if before else {}
         self._bases[press_hash] = made
         while len(self._bases) > MOST_BASES:
@@ -85,7 +89,8 @@ class Estimator:
         found: dict[str, Any] = {"moved": sorted(shifts)}
         for number, (name, value) in enumerate(zip(QUANTITIES, basis.answer, strict=True)):
             changes = [basis.exponents[key][number] * shift for key, shift in shifts.items()]
-            error = self._scale * (OF_EXPONENT * sum(map(abs, changes)) + OF_CURVATURE * distance**2)
+            of_order = OF_EXPONENT * sum(map(abs, changes)) + OF_CURVATURE * distance**2
+            error = self._scale * (of_order + basis.mesh_errors[number])  # the other design has another mesh
             moved = value * exp(sum(changes))
             found[name] = {"value": moved, "error": abs(moved) * expm1(error)}
         return found

@@ -187,7 +187,10 @@ class Follower:
                 self._changed()
 
         with suppress(TaskRefused, MachineError):  # where nothing can be estimated, a press tells
-            await self._studio.solve.run("press", "slopes:exponents", origin.text, self.moved, tell=on_way)
+            need = self._state.need_GB
+            await self._studio.solve.run(
+                "press", "slopes:exponents", origin.text, self.moved, need_GB=need, tell=on_way
+            )
 
     async def _press_in_stages(self, job: Origin) -> None:
         state = self._state

@@ -1,6 +1,7 @@
 """A studio in a process of its own, and tabs of a browser that look at it."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -100,7 +101,7 @@ class Tab:
 
     def _hear(self, said: Any) -> None:
         """An error; that a studio which has ended does not answer is none."""
-        if said.type == "error" and "WebSocket connection" not in said.text:
+        if said.type == "error" and not re.search("WebSocket connection|ERR_CONNECTION_REFUSED", said.text):
             self.wrong.append(said.text)
 
     def pressed(self, timeout_s: float = 60.0) -> None:

@@ -1,4 +1,4 @@
-"""By which powers of its numbers force, charge and voltage of a press grow, from its derivatives on large elements."""
+"""By which powers of its numbers force, charge and voltage of a press grow, from its derivatives on its own mesh."""
 
 from collections.abc import Sequence
 from contextlib import suppress
@@ -11,8 +11,7 @@ from softdot.config.schema import Config
 from softdot.differentiation import variations_of
 from softdot.studio.estimate import WITHOUT_EFFECT, dotted
 from softdot.studio.work.design import case_of, pressed_part
-from softdot.studio.work.influences import quick_press
-from softdot.tolerances.responses import path_matters, solved_mesh
+from softdot.tolerances.responses import MOST_LOAD_STEPS, path_matters, solved_mesh
 from solve.solution.full_load import FullLoad
 
 UNLIKELY = ("density", "pyroelectric", "yield_stress", "load_steps", "confidence")
@@ -26,7 +25,9 @@ def exponents(text: str, wanted: Sequence[str], tell: Tell) -> dict[str, Any]:
 
     wanted : keys that are to come first. InputError where the path of the press matters, or an answer is zero.
     """
-    config = quick_press(pressed_part(case_of(text)).config)
+    config = pressed_part(case_of(text)).config
+    steps = min(config.press.load_steps, MOST_LOAD_STEPS)
+    config = config.model_copy(update={"press": config.press.model_copy(update={"load_steps": steps})})
     if path_matters(config) or config.array is not None:
         raise InputError("the answer of this press depends on its path and is not estimated")
     full = FullLoad(model_of(config), solved_mesh(config))

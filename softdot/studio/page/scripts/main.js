@@ -199,7 +199,6 @@ function paintMarks({ artefacts }) {
 }
 
 function paintLink() {
-  const left = store.unsent.length ? "Your last change is kept in this page." : "";
   const { state, link } = store;
   const kept = store.unsent.length
     ? "your last change is kept in this page and is sent when it answers"
@@ -208,7 +207,7 @@ function paintLink() {
     starting: "starting…",
     open: state && state.saved !== true ? state.saved : "on this machine only; every change is saved",
     lost: `softdot studio does not answer; ${kept}`,
-    ended: `softdot studio has ended; start it again on the same port, then load this page. ${left}`,
+    ended: `softdot studio has ended; ${kept}. Start it again, and this page goes on.`,
     elsewhere: "this design is open in another tab, where it goes on",
   };
   find("#link").textContent = words[link] + (link === "open" && state && state.machine ? ` – ${state.machine}` : "");
