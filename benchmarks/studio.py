@@ -25,8 +25,8 @@ TOLD = """() => {
   window.told = [];
   document.addEventListener("softdot", (event) => window.told.push([event.detail, performance.now()]));
 }"""
-MOVED = """([label, place]) => {
-  const slider = [...document.querySelectorAll("input[type=range]")].find((one) => one.ariaLabel === label);
+MOVED = """([key, place]) => {
+  const slider = document.querySelector(`[data-slider="${key}"]`);
   window.told.length = 0;
   slider.value = place;
   window.from = performance.now();
@@ -36,13 +36,13 @@ MOVED = """([label, place]) => {
 SINCE = (
     "(kind) => { const one = window.told.find(([name]) => name === kind); return one ? one[1] - window.from : null; }"
 )
-THICKNESS = "segment.medium1.thickness_mm, slider"
-RESISTANCE = "readout.input_resistance_MOhm, slider"
+THICKNESS = "segment.medium1.thickness_mm"
+RESISTANCE = "readout.input_resistance_MOhm"
 
 
-def answer_ms(page: Page, label: str, place: float, kind: str) -> float:
+def answer_ms(page: Page, key: str, place: float, kind: str) -> float:
     """From the move of a slider to the first answer of a kind that has been shown."""
-    page.evaluate(MOVED, [label, place])
+    page.evaluate(MOVED, [key, place])
     end = time.monotonic() + 60.0
     while time.monotonic() < end:
         found = page.evaluate(SINCE, kind)
@@ -78,6 +78,7 @@ def measured(address: str, process: psutil.Process, started: float) -> dict[str,
         page.goto("about:blank")
         begin = time.perf_counter()
         page.goto(address)
+        page.locator("#start .go").click(timeout=60_000)
         page.locator("#form .field").first.wait_for(timeout=60_000)
         found = {
             "first page after the command": time.perf_counter() - started,
@@ -121,7 +122,7 @@ def circuit(page: Page) -> float:
     """Median of moves of a resistor, after the first."""
     page.locator("#circuit > summary").click()
     page.locator("#circuit").get_by_label("with amplifier").check()
-    field = page.locator("#circuit").get_by_label("input resistance")
+    field = page.locator("#circuit").get_by_role("textbox", name="input resistance")
     field.fill("10")
     field.press("Enter")
     page.locator("#circuit .answer", has_text="At full load").wait_for()

@@ -22,8 +22,8 @@ PICTURES = DOCS / "pictures"
 ARRAY = (DOCS.parent / "examples" / "array-cell.toml").read_text("utf-8")
 FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
 WAIT_MS = 900_000
-LOOKS = [(scheme, width) for width in (1366, 400) for scheme in ("light", "dark")]
-HEIGHT = {1366: 768, 400: 860}
+LOOKS = [(scheme, width) for width in (1366, 1920, 400) for scheme in ("light", "dark")]
+HEIGHT = {1366: 768, 1920: 1080, 400: 860}
 
 
 def pressed(page: Page) -> None:
@@ -33,32 +33,54 @@ def pressed(page: Page) -> None:
 
 def write(page: Page, text: str) -> None:
     """Another design as TOML, read at once."""
+    page.get_by_role("tab", name="TOML").click()
     page.locator("#text").fill(text)
     page.locator("#text").blur()
+    page.get_by_role("tab", name="Numbers").click()
+
+
+def start(page: Page) -> None:
+    """What a new tab begins with."""
+    page.locator("#start .cards button").first.wait_for(timeout=WAIT_MS)
 
 
 def design(page: Page) -> None:
     """The form as it opens."""
-    page.locator("#form .field").first.wait_for()
+    if page.locator("#start").is_visible():
+        page.locator("#start .go").click()
+    page.locator("#form .field").first.wait_for(timeout=WAIT_MS)
+
+
+def mistake(page: Page) -> None:
+    """A thickness that cannot be, at its field."""
+    pressed(page)
+    field = page.locator('[data-key="segment.medium1.thickness_mm"] input.number')
+    field.fill("-1")
+    field.press("Enter")
+    page.locator(".field.bad .wrong button").first.wait_for(timeout=WAIT_MS)
 
 
 def two_designs(page: Page) -> None:
     """A thinner medium 1, beside the design before, and what moves the voltage."""
+    page.locator(".field.bad .wrong button").first.click()
     pressed(page)
-    slider = page.get_by_label("segment.medium1.thickness_mm, slider")
+    page.locator("#keep input").fill("0.5 mm")
+    page.locator("#keep button").click()
+    slider = page.locator('[data-slider="segment.medium1.thickness_mm"]')
     slider.focus()
     for _ in range(12):
         page.keyboard.press("ArrowLeft")
-    page.locator("#designs li").nth(1).wait_for(timeout=WAIT_MS)
+    page.locator("#before:visible").wait_for(timeout=WAIT_MS)
+    page.locator("#before").wait_for(state="hidden", timeout=WAIT_MS)
     pressed(page)
-    page.select_option("#view3d select", "stress")
+    page.select_option("#view3d .colour", "stress")
     page.locator("[data-start=influences]").click()
     page.locator("#influences svg").wait_for(timeout=WAIT_MS)
 
 
 def charge(page: Page) -> None:
     """The film alone."""
-    page.select_option("#view3d select", "charge")
+    page.select_option("#view3d .colour", "charge")
 
 
 def circuit(page: Page) -> None:
@@ -66,7 +88,7 @@ def circuit(page: Page) -> None:
     page.locator("#circuit > summary").click()
     page.locator("#circuit").get_by_label("with amplifier").check()
     for name, value in (("input resistance", "10"), ("low pass", "60")):
-        field = page.locator("#circuit").get_by_label(name)
+        field = page.locator("#circuit").get_by_role("textbox", name=name)
         field.fill(value)
         field.press("Enter")
     page.locator("#circuit .answer svg").wait_for()
@@ -75,6 +97,8 @@ def circuit(page: Page) -> None:
 
 def compared(page: Page) -> None:
     """Three designs side by side; the last one is too deep, of which the warnings tell."""
+    page.get_by_role("button", name="Delete 0.5 mm").click()
+    page.select_option("#view3d .colour", "part")
     for depth in ("0.3", "0.2", "0.6"):
         write(page, f"[segment]\nheld_layers = ['medium1', 'film', 'medium2']\n[press]\nindentation_mm = {depth}\n")
         page.locator("#before:visible").wait_for(timeout=WAIT_MS)
@@ -87,6 +111,7 @@ def compared(page: Page) -> None:
 def downloads(page: Page) -> None:
     """Kit, report and plate are made."""
     page.locator("#reset").click()
+    page.locator("#before").wait_for(state="hidden", timeout=WAIT_MS)
     pressed(page)
     for task in ("kit", "report"):
         page.locator(f"[data-start={task}]").click()
@@ -118,7 +143,9 @@ def array(page: Page) -> None:
 
 
 STAGES: dict[str, tuple[Callable[[Page], None], tuple[str, ...]]] = {
+    "start": (start, ("#start",)),
     "design": (design, ("#design",)),
+    "mistake": (mistake, ("#design",)),
     "pressed": (two_designs, ("#result", "#curves", "#influences")),
     "charge": (charge, ("#result",)),
     "circuit": (circuit, ("#circuit",)),
@@ -129,6 +156,7 @@ STAGES: dict[str, tuple[Callable[[Page], None], tuple[str, ...]]] = {
 }
 """What is done one after the other in one tab, and the panels at which it is then looked."""
 CHOSEN = {
+    ("start", "#start", "light", 1366): "studio-start",
     ("pressed", "#result", "light", 1366): "studio",
     ("circuit", "#circuit", "dark", 1366): "studio-dark",
     ("charge", "#result", "light", 400): "studio-narrow",

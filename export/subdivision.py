@@ -9,8 +9,8 @@ from foundation.arrays import Floats, Ints
 
 TRIANGLE_EDGES = ((0, 1), (1, 2), (2, 0))
 TETRA_EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
-_TRIANGLE_CHILDREN = ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5))
-_TETRA_CHILDREN = (
+TRIANGLE_CHILDREN = ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5))
+TETRA_CHILDREN = (
     (0, 4, 6, 7), (4, 1, 5, 8), (6, 5, 2, 9), (7, 8, 9, 3),
     (4, 6, 7, 8), (6, 7, 8, 9), (4, 5, 6, 8), (5, 6, 8, 9),
 )  # fmt: skip
@@ -19,13 +19,13 @@ _TETRA_CHILDREN = (
 @functools.cache
 def triangle_pattern(level: int) -> tuple[Floats, Ints]:
     """Weights (p, 6) of the quadratic triangle's nodes at small corners, and small triangles (4^level, 3)."""
-    return _subdivision_pattern(level, 3, TRIANGLE_EDGES, _TRIANGLE_CHILDREN)
+    return _subdivision_pattern(level, 3, TRIANGLE_EDGES, TRIANGLE_CHILDREN)
 
 
 @functools.cache
 def tetra_pattern(level: int) -> tuple[Floats, Ints]:
     """Weights (p, 10) of the quadratic tetrahedron's nodes at small corners, and small tetrahedra (8^level, 4)."""
-    return _subdivision_pattern(level, 4, TETRA_EDGES, _TETRA_CHILDREN)
+    return _subdivision_pattern(level, 4, TETRA_EDGES, TETRA_CHILDREN)
 
 
 def _subdivision_pattern(

@@ -21,6 +21,7 @@ from export.skin import (
     outer_skin,
 )
 from export.view import COLOUR_MAP, DIVERGING
+from foundation.arrays import Floats
 from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS
 from mesh.types import TetMesh
@@ -41,12 +42,12 @@ def viewer_data(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape) -> 
     same corners. dotShift (s, 3) moves the dot; plane is the cut's y; colours, names, colourMap and diverging say how
     to paint.
     """
-    chosen = [result.steps[k] for k in _spread_steps(len(result.steps))]
+    chosen = [result.steps[k] for k in spread_steps(len(result.steps))]
     nodes = nodal_steps(tet_mesh, chosen)
     plane = nearby_plane(tet_mesh, float(chosen[-1].dot_position_m[1]) * MM_PER_M)
     skins = _skins(nodes, tet_mesh, plane)
     return {
-        "steps": [_caption(step) for step in chosen],
+        "steps": [step_caption(step) for step in chosen],
         "names": list(tet_mesh.region_names),
         "colours": [rgb(PART_COLOURS[name]) for name in tet_mesh.region_names],
         **colour_maps(),
@@ -58,12 +59,13 @@ def viewer_data(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape) -> 
     }
 
 
-def _spread_steps(count: int) -> list[int]:
+def spread_steps(count: int) -> list[int]:
     """At most MOST_STEPS indices from the first to the last."""
     return sorted({round(k) for k in np.linspace(0, count - 1, min(count, MOST_STEPS))})
 
 
-def _caption(step: Step) -> dict[str, float]:
+def step_caption(step: Step) -> dict[str, float]:
+    """Depth in mm and force in N of a step."""
     return {"indentation": step.indentation_m * MM_PER_M, "force": step.reaction_force_N}
 
 
@@ -83,11 +85,11 @@ def _geometry_arrays(skins: list[Skin]) -> dict[str, Any]:
     points = np.concatenate([skin.points_mm for skin in skins])
     displacement = np.concatenate([skin.displacement_mm for skin in skins], axis=1)
     region = np.concatenate([skin.region for skin in skins])
-    unit = (float(np.abs(displacement).max()) or 1.0) / 32767
+    moved = displacement_steps(displacement)
     return {
         "points": base64_array(points, np.float32),
-        "displacement": base64_array(np.round(displacement / unit), np.int16),
-        "displacementUnit": unit,
+        **moved,
+        "displacement": base64_array(moved["displacement"], np.int16),
         "region": base64_array(region, np.uint8),
         **triangles,
     }
@@ -104,20 +106,30 @@ def _field_arrays(skins: list[Skin], tet_mesh: TetMesh, peak: FilmPeak) -> dict[
     charge = np.concatenate([skin.charge_pC_per_mm2 for skin in skins], axis=1)
     pressure = np.concatenate([skin.contact_pressure_MPa for skin in skins], axis=1)
     soft = np.concatenate([skin.region for skin in skins]) != tet_mesh.region_names.index("film")
-    stress_top = float(np.percentile(stress[-1, soft], 99)) or 1.0
-    strain_top = peak.strain or 1.0
-    charge_top = 1e6 * float(np.abs(peak.charge_density_C_per_m2).max()) or 1.0
-    pressure_top = float(pressure.max()) or 1.0
+    tops = field_tops(stress[-1, soft], pressure, peak)
     return {
-        "stress": base64_array(_byte_shares(stress, stress_top), np.uint8),
-        "strain": base64_array(_byte_shares(strain, strain_top), np.uint8),
-        "charge": base64_array(_byte_shares(charge + charge_top, 2 * charge_top), np.uint8),
-        "pressure": base64_array(_byte_shares(pressure, pressure_top), np.uint8),
-        "stressTop": stress_top,
-        "strainTop": strain_top,
-        "chargeTop": charge_top,
-        "pressureTop": pressure_top,
+        "stress": base64_array(byte_shares(stress, tops["stress"]), np.uint8),
+        "strain": base64_array(byte_shares(strain, tops["strain"]), np.uint8),
+        "charge": base64_array(byte_shares(charge + tops["charge"], 2 * tops["charge"]), np.uint8),
+        "pressure": base64_array(byte_shares(pressure, tops["pressure"]), np.uint8),
+        **{f"{name}Top": top for name, top in tops.items()},
     }
+
+
+def field_tops(soft_stress_MPa: Floats, pressure_MPa: Floats, peak: FilmPeak) -> dict[str, float]:
+    """The largest value that is shown of each field. soft_stress_MPa : at the last step, without the film."""
+    return {
+        "stress": float(np.percentile(soft_stress_MPa, 99)) or 1.0,
+        "strain": peak.strain or 1.0,
+        "charge": 1e6 * float(np.abs(peak.charge_density_C_per_m2).max()) or 1.0,
+        "pressure": float(pressure_MPa.max()) or 1.0,
+    }
+
+
+def displacement_steps(displacement_mm: Floats) -> dict[str, Any]:
+    """The displacement (s, v, 3) as int16, and the unit of 1 in mm."""
+    unit = (float(np.abs(displacement_mm).max()) or 1.0) / 32767
+    return {"displacement": np.asarray(np.round(displacement_mm / unit), np.int16), "displacementUnit": unit}
 
 
 def _dot_arrays(tet_mesh: TetMesh, steps: Sequence[Step], dot_shape: DotShape, plane: float) -> dict[str, Any]:
@@ -129,19 +141,20 @@ def _dot_arrays(tet_mesh: TetMesh, steps: Sequence[Step], dot_shape: DotShape, p
     cut = [part.clip_closed_surface("y", origin=(0.0, plane - slide, 0.0)) for part in whole]
     shift = np.stack([step.dot_position_m * MM_PER_M - first for step in steps])
     return {
-        "dotPoints": base64_array(_triangle_corners(whole), np.float32),
-        "dotCut": base64_array(_triangle_corners(cut), np.float32),
+        "dotPoints": base64_array(triangle_corners(whole), np.float32),
+        "dotCut": base64_array(triangle_corners(cut), np.float32),
         "dotShift": shift.tolist(),
         "dotColour": rgb(PART_COLOURS["dot"]),
     }
 
 
-def _triangle_corners(surfaces: Sequence[Any]) -> NDArray[np.float64]:
+def triangle_corners(surfaces: Sequence[Any]) -> NDArray[np.float64]:
     """Corners (3 t, 3) of all triangles."""
     return np.concatenate([s.triangulate().points[s.triangulate().regular_faces].reshape(-1, 3) for s in surfaces])
 
 
-def _byte_shares(values: NDArray[np.float64], top: float) -> NDArray[np.float64]:
+def byte_shares(values: NDArray[np.float64], top: float) -> NDArray[np.float64]:
+    """Whole numbers from 0 to 255, of values from 0 to top."""
     return np.asarray(np.round(255 * np.clip(values / top, 0, 1)))
 
 
@@ -160,10 +173,15 @@ def rgb(colour: str) -> list[float]:
 
 def colour_maps() -> dict[str, str]:
     """256 RGB triples, as base64, of each of the colour maps of the pictures."""
+    return {name: base64_array(triples, np.uint8) for name, triples in colour_map_bytes().items()}
+
+
+def colour_map_bytes() -> dict[str, NDArray[np.uint8]]:
+    """256 RGB triples of each of the colour maps of the pictures."""
     import matplotlib
 
     maps = {"colourMap": COLOUR_MAP, "diverging": DIVERGING}
     return {
-        name: base64_array(255 * matplotlib.colormaps[found](np.arange(256))[:, :3], np.uint8)
+        name: np.asarray(255 * matplotlib.colormaps[found](np.arange(256))[:, :3], np.uint8)
         for name, found in maps.items()
     }

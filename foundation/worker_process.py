@@ -6,6 +6,7 @@ of its parent, and ends with its parent, however that ends.
 
 import os
 import pickle
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Mapping
@@ -66,6 +67,13 @@ class WorkerProcess:
         self.kill()
         self._pool.shutdown(cancel_futures=True)
         sweep_scratch()
+
+    def interrupt(self) -> bool:
+        """Send SIGINT, on which a call may stop if it listens to it; whether this platform can."""
+        if os.name != "posix" or not self.is_alive:
+            return False
+        self._process.send_signal(signal.SIGINT)
+        return True
 
     def kill(self) -> None:
         """Kill the process at once: a library could hold up one that is asked to end for seconds."""

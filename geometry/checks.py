@@ -13,12 +13,13 @@ from geometry.assembly import case_outer_box
 from geometry.dot import DotShape
 from geometry.electrode_outlines import check_electrodes
 from geometry.parameters import Dot, Segment
-from geometry.part_checks import check_effector, covers_footprint, refuse_out_of_plane
+from geometry.part_checks import check_effector, check_size_range, covers_footprint, refuse_out_of_plane
 from geometry.stack import Dome, bodies, layers
 
 
 def check_segment(segment: Segment) -> list[str]:
     """Raise InputError for a segment that cannot be built; return warnings about one that can."""
+    check_size_range(segment)
     check_effector(segment)
     check_electrodes(segment)
     _check_bonds(segment)

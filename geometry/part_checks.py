@@ -1,4 +1,4 @@
-"""Checks whether an effector and a delaminated patch fit on their segment."""
+"""Checks of the sizes of a segment, and whether an effector and a delaminated patch fit on it."""
 
 from foundation.errors import InputError
 from geometry.parameters import Effector, Segment
@@ -10,6 +10,28 @@ SIZES_OF_SHAPE: dict[str, tuple[str, ...]] = {
     "dome": ("diameter_mm",),
 }
 ROUNDING_MM = 1e-9
+SMALLEST_MM, LARGEST_MM = 1e-4, 1e3
+"""Sizes of a segment: the CAD kernel takes points closer than 1e-7 mm for one, a thousandth of the smallest size, and
+a metre is no tactile sensor.
+"""
+LAYER_TABLES = "effector", "medium1", "film", "medium2"
+IN_MM = "length_mm", "width_mm", "height_mm", "diameter_mm", "thickness_mm"
+MM_OF_SIZE = {**dict.fromkeys(IN_MM, 1.0), "thickness_um": 1e-3}
+"""Keys of sizes -> millimetres of their unit."""
+
+
+def check_size_range(segment: Segment) -> None:
+    """Raise InputError for a size of the segment that is far from that of any sensor."""
+    tables = {"segment": segment, **{f"segment.{name}": getattr(segment, name) for name in LAYER_TABLES}}
+    for name, table in tables.items():
+        for key, unit_mm in MM_OF_SIZE.items():
+            size = getattr(table, key, None)
+            if size is None:
+                continue
+            if size * unit_mm < SMALLEST_MM:
+                raise InputError(f"{name}.{key} = {size:g}: must be at least {SMALLEST_MM / unit_mm:g}")
+            if size * unit_mm > LARGEST_MM:
+                raise InputError(f"{name}.{key} = {size:g}: must be at most {LARGEST_MM / unit_mm:g}")
 
 
 def refuse_out_of_plane(segment: Segment, key: str, y: float) -> None:

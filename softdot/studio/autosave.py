@@ -9,6 +9,7 @@ from typing import Any
 
 from foundation.errors import InputError
 from foundation.files import read_text, write_whole_text
+from softdot.studio.starts import sizes, title
 
 MOST_DESIGNS = 50
 NAME = re.compile(r"[a-z0-9]{1,40}")
@@ -28,11 +29,15 @@ class Autosave:
     def __init__(self, place: Path) -> None:
         self._place = place
 
-    def save(self, name: str, text: str) -> None:
-        """Replace the design of a tab, whole. A disk that cannot be written loses nothing that is open."""
-        with suppress(OSError):
+    def save(self, name: str, text: str) -> str | None:
+        """Replace the design of a tab, whole. The sentence that says why it could not be saved, None where it was."""
+        try:
             self._place.mkdir(parents=True, exist_ok=True, mode=0o700)
             write_whole_text(self._file(name), text)
+        except OSError as error:
+            reason = error.strerror or type(error).__name__
+            return f"This design is not saved: {self._place} cannot be written ({reason}). Save it as a file."
+        return None
 
     def load(self, name: str) -> str | None:
         """The design of a tab, None where there is none. InputError for a name that none of ours is."""
@@ -40,12 +45,14 @@ class Autosave:
         return read_text(file, "the saved design") if file.is_file() else None
 
     def earlier(self, without: set[str]) -> list[dict[str, Any]]:
-        """Name and time (seconds since 1970) of the designs of other tabs, newest first; forgets the oldest."""
+        """Name, time (seconds since 1970), title and sizes of the designs of other tabs, newest first; forgets the
+        oldest.
+        """
         found = sorted(self._place.glob("*.toml"), key=lambda file: -file.stat().st_mtime)
         for file in found[MOST_DESIGNS:]:
             file.unlink(missing_ok=True)
         kept = [file for file in found[:MOST_DESIGNS] if file.stem not in without]
-        return [{"name": file.stem, "saved_s": file.stat().st_mtime, "lines": _lines(file)} for file in kept]
+        return [{"name": file.stem, "saved_s": file.stat().st_mtime, **_told(file)} for file in kept]
 
     def _file(self, name: str) -> Path:
         if not NAME.fullmatch(name):
@@ -53,12 +60,12 @@ class Autosave:
         return self._place / f"{name}.toml"
 
 
-def _lines(file: Path) -> str:
-    """Its thicknesses, to tell it from the others."""
-    with suppress(InputError):
-        found = re.findall(r"^(?:thickness_\w+|indentation_mm) *= *[\d.]+", file.read_text("utf-8", "replace"), re.M)
-        return ", ".join(found)
-    return ""
+def _told(file: Path) -> dict[str, Any]:
+    """By what a design is told from the others: its first comment, and its sizes for a sketch."""
+    text = ""
+    with suppress(OSError):
+        text = file.read_text("utf-8", "replace")
+    return {"title": title(text), "sizes": sizes(text)}
 
 
 def new_name() -> str:

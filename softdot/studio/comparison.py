@@ -15,6 +15,15 @@ def differences(before: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str
     return {key: new.get(key) for key in {**new, **old} if old.get(key) != new.get(key)}
 
 
+def design_words(before: Mapping[str, Any] | None, after: Mapping[str, Any] | None) -> str:
+    """What distinguishes a design from another, such as medium1.thickness_mm = 0.47; empty where nothing does."""
+    if before is None or after is None:
+        return "a design before"
+    changed = differences(before, after)
+    words = [f"{key.removeprefix('segment.')} = {value}" for key, value in changed.items()]
+    return ", ".join(words[:2]) + (f" and {len(words) - 2} more" if len(words) > 2 else "")
+
+
 def _leaves(tables: Mapping[str, Any]) -> dict[str, Any]:
     return {".".join(way): value for way, value in leaves(tables) if way[0] not in LEFT_OUT}
 

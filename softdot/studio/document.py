@@ -81,7 +81,7 @@ class Document:
             _put(place, key[-1], value)
             take_out_idle(document, key)
         except (KeyError, IndexError, TypeError, ValueError, AttributeError, TOMLKitError):
-            raise InputError(f"{_dotted(key)}: there is no such place in this design") from None
+            raise InputError(f"{dotted_key(key)}: there is no such place in this design") from None
         self.write(tomlkit.dumps(document), joined)
 
     def _parsed(self) -> tomlkit.TOMLDocument:
@@ -112,5 +112,6 @@ def _filled(made: Any, values: dict[str, Any]) -> Any:
     return made
 
 
-def _dotted(key: Key) -> str:
+def dotted_key(key: Key) -> str:
+    """Such as segment.film.electrodes[0].name."""
     return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in key).removeprefix(".")

@@ -1,120 +1,118 @@
 """What goes on by itself: each change of a design is drawn and checked, and pressed as soon as the hand rests."""
 
 import asyncio
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
-from foundation.worker_process import ProcessDiedError
-from softdot.studio.comparison import differences
-from softdot.studio.document import Document
-from softdot.studio.processes import InTurn, Pool, TaskRefused
+from softdot.studio.autosave import Autosave
+from softdot.studio.design_facts import Json, Origin, Phase
+from softdot.studio.design_state import DesignState
+from softdot.studio.processes import InTurn, MachineError, Pool, TaskRefused
 
 PAUSE_S, REST_S = 0.15, 0.2
 """A hand that has changed nothing for so long pauses, and the design is checked; then it rests, and it is pressed."""
-MOST_CURVES = 6
-Json = dict[str, Any]
-TellTab = Callable[..., None]
-"""The kind of a message, whether it is repeated to a tab that comes back (again), and its content."""
+MOST_MOVED = 8
+LOADING = {
+    "parts": "the process that draws is being loaded on this machine",
+    "check": "the process that checks designs is being loaded on this machine",
+}
 
 
-@dataclass
-class Known:
-    """What is known of a design. state : of its last check (softdot.studio.work.design.examine).
+@dataclass(frozen=True)
+class Studio:
+    """What all tabs share. draw : the parts; check : designs and circuits; solve : presses and long work."""
 
-    curves : presses, the last one last: label, quality, numbers, values of the configuration, hash of what is pressed.
-    history : of the last press, for circuits. pressed : hash of what it depends on.
-    """
-
-    state: Json = field(default_factory=dict)
-    curves: list[Json] = field(default_factory=list)
-    history: bytes | None = None
-    pressed: str | None = None
-
-    @property
-    def numbers(self) -> Json | None:
-        """Of the press of the present design, None where there is none yet."""
-        last = self.curves[-1] if self.curves else {"press_hash": None}
-        there = last["press_hash"] is not None and last["press_hash"] == self.state.get("press_hash")
-        return last["numbers"] if there else None
-
-    @property
-    def is_pressed(self) -> bool:
-        """Whether the last press, or the one under way, is of the present design."""
-        return self.pressed is not None and self.pressed == self.state.get("press_hash")
+    draw: InTurn
+    check: InTurn
+    solve: Pool
+    autosave: Autosave
+    scratch: Path
 
 
 class Follower:
-    """Follows one document. draw, check : processes for what is quick, solve : for presses."""
+    """Does what the state of a design wants. changed : called after every fact that it has brought into the state.
 
-    def __init__(self, document: Document, draw: InTurn, check: InTurn, solve: Pool, tell: TellTab) -> None:
-        self.known = Known()
-        self._document, self._tell = document, tell
-        self._draw_process, self._check_process, self._solve_pool = draw, check, solve
+    moved : dotted keys that the hand has moved, the last one first.
+    """
+
+    def __init__(self, state: DesignState, studio: Studio, changed: Callable[[], None]) -> None:
+        self._state, self._studio, self._changed = state, studio, changed
         self._undrawn, self._unchecked, self._circuit_first = asyncio.Event(), asyncio.Event(), False
+        self.moved: list[str] = []
         self._press_task: asyncio.Task[None] | None = None
-        self._tasks = [asyncio.create_task(self._draw()), asyncio.create_task(self._check())]
+        self._slopes_task: asyncio.Task[None] | None = None
+        self._tasks = {asyncio.create_task(self._draw()), asyncio.create_task(self._check())}
 
     def touch(self, circuit_first: bool = False) -> None:
-        """The document has changed; circuit_first : in the amplifier alone, which is answered before the rest."""
+        """The design has changed; circuit_first : in the amplifier alone, which is answered before the rest."""
         self._circuit_first = circuit_first
-        if not circuit_first:
-            self._undrawn.set()
+        self._undrawn.set()
         self._unchecked.set()
+
+    def has_moved(self, key: str) -> None:
+        """A hand has moved this number."""
+        self.moved = [key, *(one for one in self.moved if one != key)][:MOST_MOVED]
 
     def press_again(self) -> None:
         """Also where the present design is pressed already, or its press was cancelled."""
-        self.cancel_press()
-        self.known.pressed = None
-        self._unchecked.set()
+        self.cancel_press(None)
+        self._state.again()
+        self.touch()
 
-    def cancel_press(self) -> None:
-        """End the press; the next change begins another one."""
+    def cancel_press(self, phase: Phase | None = "cancelled") -> None:
+        """End the press. phase : None where the design is another one, or is pressed anew."""
+        if self._state.job is not None:
+            self._state.press_ends(self._state.job, phase, "The press was cancelled.")
         if self._press_task is not None:
             self._press_task.cancel()
+            self._press_task = None
+        self._changed()
 
     def close(self) -> None:
         """End everything."""
-        for task in self._tasks:
-            task.cancel()
-        self.cancel_press()
+        for task in (*self._tasks, self._slopes_task):
+            if task is not None:
+                task.cancel()
+        self.cancel_press(None)
 
     async def _draw(self) -> None:
         """The parts, at every change."""
         while True:
             await self._undrawn.wait()
             self._undrawn.clear()
-            with suppress(TaskRefused, ProcessDiedError, TimeoutError):
-                parts = await self._quick(self._draw_process, "design:draw", self._document.text)
-                if parts is not None:
-                    self._tell("parts", again=True, view=parts)
+            while self._state.wants_parts:
+                origin, view = self._state.present, None
+                with suppress(TaskRefused, MachineError):
+                    view = await self._quick("parts", "design:draw", origin.text)
+                self._state.drawn(origin, view)
+                self._changed()
 
     async def _check(self) -> None:
         """The rest, when the hand pauses; and the press, when it rests."""
         while True:
             await self._unchecked.wait()
             self._unchecked.clear()
-            with suppress(TaskRefused, ProcessDiedError, TimeoutError):
-                await self._look(self._document.text)
+            await self._look()
 
-    async def _look(self, text: str) -> None:
-        known = self.known
+    async def _look(self) -> None:
+        state = self._state
         if self._circuit_first:
-            await self._answer_circuit(text)
-        if known.state and await self._changes_within(PAUSE_S):
-            return
-        known.state = await self._quick(self._check_process, "design:examine", text)
-        self._tell("state", again=True, **known.state)
-        if not known.is_pressed:
-            self.cancel_press()
-        elif not self._circuit_first:
-            await self._answer_circuit(text)
+            await self._answer_circuit()
+        if state.wants_check:
+            if state.revision and await self._changes_within(PAUSE_S):
+                return
+            await self._examine(state.present)
+        if state.check is not None:
+            if state.job is not None and state.job.press_hash != state.present.press_hash:
+                self.cancel_press(None)
+            await self._answer_circuit()
         if await self._changes_within(REST_S):
             return
-        if known.state.get("press_hash") is not None and not known.is_pressed:
-            known.pressed = known.state["press_hash"]
-            self._press_task = asyncio.create_task(self._press(text, known.state))
+        if state.wants_press and state.job is None:
+            self._press_task = asyncio.create_task(self._press())
 
     async def _changes_within(self, seconds: float) -> bool:
         """Whether there is another change in that time."""
@@ -122,83 +120,96 @@ class Follower:
             await asyncio.wait_for(self._unchecked.wait(), seconds)
         return self._unchecked.is_set()
 
-    async def _quick(self, process: InTurn, task: str, *arguments: Any) -> Any:
-        """A short task; the tab is told where it or its process fails."""
+    async def _examine(self, origin: Origin) -> None:
         try:
-            return await process.run(task, *arguments)
-        except TimeoutError:
-            self._tell("said", text="this design takes too long to check: its numbers are absurd", bad=True)
-            raise
-        except ProcessDiedError:
-            self._tell("said", text="the process that checks designs ended and was started again", bad=True)
-            raise
-        except TaskRefused as refused:
-            self._tell("said", text=str(refused), bad=True)
-            raise
+            self._state.checked(origin.text, await self._quick("check", "design:examine", origin.text))
+        except (TaskRefused, MachineError) as error:
+            self._state.check_fails(origin, f"The design could not be checked: {error}.")
+        self._changed()
 
-    async def _answer_circuit(self, text: str) -> None:
-        known = self.known
-        if known.history is None:
-            return
+    async def _quick(self, of: str, task: str, *arguments: Any) -> Any:
+        """A short task. What takes longer than it should for a reason of the machine is said of the machine."""
+        process = self._studio.draw if of == "parts" else self._studio.check
+        if not process.is_warm:
+            self._state.machine_says(of, LOADING[of])
+            self._changed()
         try:
-            found = await self._check_process.run("press:circuit", text, known.history)
-        except TaskRefused:  # the design has a mistake, of which its check tells
-            return
-        known.curves[-1]["numbers"]["readout_voltage_V"] = found and found["readout_voltage_V"]
-        self._tell("circuit", again=True, found=found)
+            found = await process.run(task, *arguments)
+        except MachineError as error:
+            self._state.machine_says(of, str(error))
+            raise
+        except BaseException:
+            self._state.machine_says(of, None)
+            raise
+        self._state.machine_says(of, None)
+        return found
 
-    async def _press(self, text: str, state: Json) -> None:
+    async def _answer_circuit(self) -> None:
+        """What the amplifier makes of the charge of the press."""
+        state, press = self._state, self._state.shown_press
+        if press is None or not state.wants_circuit:
+            return
+        origin = replace(state.present, press_hash=press.origin.press_hash)
+        history = press.found["history"]
+        with suppress(TaskRefused, MachineError):  # a mistake, of which its check tells
+            found = await self._quick("check", "press:circuit", origin.text, history)
+            state.made("circuit", origin, {"history": history, "found": found})
+            self._changed()
+
+    async def _press(self) -> None:
         """Coarse, then accurate; each is shown as soon as it is there."""
-        values = state["values"]
-        curve = {"label": self._label(values), "values": values, "press_hash": state["press_hash"]}
+        state = self._state
+        if self._slopes_task is not None:
+            self._slopes_task.cancel()
+        job = state.press_begins()
+        self._changed()
+        try:
+            await self._press_in_stages(job)
+            state.press_ends(job)
+        except asyncio.CancelledError:
+            state.press_ends(job)
+            raise
+        except TaskRefused as error:
+            state.press_ends(job, "failed", str(error))
+        except MachineError as error:
+            state.press_ends(job, "failed", f"The press has no answer: {error}. The design is as it was.")
+        finally:
+            self._changed()
+        if state.wants_exponents:
+            self._slopes_task = asyncio.create_task(self._learn_exponents(state.present))
+
+    async def _learn_exponents(self, origin: Origin) -> None:
+        """From them designs beside a pressed one are estimated while a slider moves."""
+
+        def on_way(told: Json) -> None:
+            if "exponents" in told:
+                self._state.estimator.add_exponents(origin.press_hash or "", told["exponents"])
+                self._changed()
+
+        with suppress(TaskRefused, MachineError):  # where nothing can be estimated, a press tells
+            need = self._state.need_GB
+            await self._studio.solve.run(
+                "press", "slopes:exponents", origin.text, self.moved, need_GB=need, tell=on_way
+            )
+
+    async def _press_in_stages(self, job: Origin) -> None:
+        state = self._state
 
         def on_way(told: Json) -> None:
             if "press" in told:
-                self._show(told["press"], curve)
+                state.pressed(job, told["press"], complete=False)
+                answer = asyncio.create_task(self._answer_circuit())
+                self._tasks.add(answer)
+                answer.add_done_callback(self._tasks.discard)
             else:
-                self._tell("progress", task="press", **told["progress"])
+                state.press_goes_on(job, told["progress"])
+            self._changed()
 
-        try:
-            for task in state["presses"]:
-                found = await self._solve_pool.run(task, text, tell=on_way)
-                if "array" in found:
-                    self._show_array(found, curve["press_hash"])
-                    continue
-                self._show(found, curve)
-                with suppress(ProcessDiedError, TimeoutError):
-                    await self._answer_circuit(self._document.text)
-            self._tell("ended", task="press")
-        except asyncio.CancelledError:
-            self._tell("ended", task="press", said="cancelled")
-            raise
-        except (TaskRefused, ProcessDiedError) as error:  # not again by itself
-            lost = isinstance(error, ProcessDiedError)
-            said = "the process of the press ended; the design is as it was" if lost else str(error)
-            self._tell("ended", task="press", said=said, bad=True)
-
-    def _label(self, values: Mapping[str, Any]) -> str:
-        """What distinguishes a press from the one before."""
-        if not self.known.curves:
-            return "first design"
-        changed = differences(self.known.curves[-1]["values"], values)
-        words = [f"{key.removeprefix('segment.')} = {value}" for key, value in changed.items()]
-        return ", ".join(words[:2]) + (f" and {len(words) - 2} more" if len(words) > 2 else "") or "the same again"
-
-    def _show(self, found: Json, curve: Json) -> None:
-        """Numbers and fields of a press: the accurate one takes the place of the coarse one."""
-        known = self.known
-        if known.curves and known.curves[-1]["press_hash"] == curve["press_hash"]:
-            curve = known.curves.pop()
-        curve = {**curve, "quality": found["quality"], "numbers": found["numbers"]}
-        known.curves = [*known.curves[1 - MOST_CURVES :], curve]
-        known.history = found["history"]
-        shown = [{name: one[name] for name in ("label", "quality", "numbers", "press_hash")} for one in known.curves]
-        self._tell("curves", again=True, curves=shown)
-        if found["view"] is not None:
-            self._tell("pressed", again=True, view=found["view"])
-
-    def _show_array(self, found: Json, press_hash: str) -> None:
-        """The press of an array, which has no curves among those of single segments."""
-        self._tell("array", again=True, pressed={**found["array"], "press_hash": press_hash})
-        if found["view"] is not None:
-            self._tell("pressed", again=True, view=found["view"])
+        tasks, need_GB = list(state.presses_to_do), state.need_GB
+        for task in tasks:
+            is_last = task == tasks[-1]
+            need = need_GB if is_last else 0.0
+            found = await self._studio.solve.run("press", task, job.text, need_GB=need, tell=on_way)
+            state.pressed(job, found, complete=is_last)
+            self._changed()
+            await self._answer_circuit()

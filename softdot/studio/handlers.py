@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import re
 from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
@@ -12,17 +13,25 @@ from tornado.web import Application, HTTPError, RequestHandler, stream_request_b
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from foundation.errors import InputError
-from softdot.studio.guard import HEADERS, PAPER_POLICY
+from softdot.studio.connections import TRUSTED
+from softdot.studio.frames import packed
+from softdot.studio.guard import FRAME_POLICY, HEADERS, PAPER_POLICY
+from softdot.studio.processes import MachineError, TaskRefused
 from softdot.studio.session import Session
 from softdot.studio.tabs import Tabs
 from softdot.studio.uploads import LARGEST_MB, split, unpack
 
 PAGE = files("softdot.studio").joinpath("page")
-VIEWER = files("export")
 TEXTS = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}
 KINDS = {ending: f"{kind}; charset=utf-8" for ending, kind in TEXTS.items()} | {".png": "image/png"}
-ASSETS = dict.fromkeys(("studio.css", "icon.svg"), PAGE) | {"webgl.js": VIEWER, "viewer.js": VIEWER}
+FOLDERS = PAGE, PAGE.joinpath("scripts"), PAGE.joinpath("vendor")
+ASSETS = {one.name: one for folder in FOLDERS for one in folder.iterdir() if one.name.endswith((".css", ".js", ".svg"))}
+FRAME = """<!doctype html><html lang="en"><meta charset="utf-8"><title>{title}</title>
+<link rel="stylesheet" href="/assets/frame.css">
+<iframe sandbox="allow-scripts" src="{address}" title="{title}"></iframe>
+"""
 LARGEST_MESSAGE = 1 << 20
+NONCE = re.compile(r"[\w-]{20,100}")
 
 
 class Guarded(RequestHandler):
@@ -43,9 +52,19 @@ class Guarded(RequestHandler):
     def prepare(self) -> None:
         """Before anything of the request is used."""
         key = self.get_query_argument("key", "") if self.needs_key else None
+        if key == "" and self.get_query_argument("question", ""):
+            key = self._proven_key()
         refused = self.tabs.guard.refusal(self.request.headers, key, self.needs_origin)
         if refused is not None:
             raise HTTPError(403, reason="Forbidden", log_message=refused)
+        if self.needs_key:
+            TRUSTED.add(getattr(self.request.connection, "stream", self))
+
+    def _proven_key(self) -> str:
+        """The key, where a tab that comes back has shown that it holds it."""
+        guard = self.tabs.guard
+        given = self.get_query_argument("question", ""), self.get_query_argument("proof", "")
+        return guard.key if guard.answered(*given) else ""
 
     def write_error(self, status_code: int, **kwargs: Any) -> None:
         """One sentence, no traceback."""
@@ -75,6 +94,20 @@ class PageHandler(Guarded):
         self.send_file(PAGE.joinpath("index.html").read_bytes(), "index.html")
 
 
+class GreetingHandler(Guarded):
+    """Shows a tab that comes back that this is the studio it knows. It tells nothing to others."""
+
+    needs_key = False
+
+    def get(self) -> None:
+        """Proof and question."""
+        nonce = self.get_query_argument("nonce", "")
+        if not NONCE.fullmatch(nonce):
+            raise HTTPError(400)
+        self.set_header("Content-Type", "application/json")
+        self.finish(json.dumps(self.tabs.guard.greeting(nonce)))
+
+
 class AssetHandler(Guarded):
     """Scripts and styles of the page: the same for everybody, so that they need no key."""
 
@@ -82,24 +115,48 @@ class AssetHandler(Guarded):
 
     def get(self, name: str) -> None:
         """One of those that are known."""
-        place = ASSETS.get(name, PAGE.joinpath("scripts") if name.endswith(".js") else None)
-        known = {one.name for one in place.iterdir()} if place is not None else set()
-        if place is None or name not in known:
+        place = ASSETS.get(name)
+        if place is None:
             raise HTTPError(404)
-        self.send_file(place.joinpath(name).read_bytes(), name)
+        self.send_file(place.read_bytes(), name)
 
 
 class FileHandler(Guarded):
-    """What a task has made, under a random address that only its tab was told."""
+    """What a task has made, under a random address that only its tab was told, and that is no key to anything else."""
 
-    def get(self, token: str) -> None:
-        """A download, a picture, or a report, which may do nothing but show itself."""
+    def prepare(self) -> None:
+        """Whoever does not know an address needs the key to be told that there is nothing."""
+        self.needs_key = not any(self.path_args[0] in one.files for one in self.tabs.sessions.values())
+        super().prepare()
+
+    def path(self, token: str) -> Path:
+        """The file of an address. HTTPError 404."""
         path = next((found for one in self.tabs.sessions.values() if (found := one.files.get(token))), None)
         if path is None or not path.is_file():
             raise HTTPError(404)
+        return path
+
+    async def get(self, token: str) -> None:
+        """A download, a picture, or a report, which may do nothing but show itself in a frame of the studio."""
+        path = self.path(token)
         if path.suffix == ".html":
             self.set_header("Content-Security-Policy", PAPER_POLICY)
-        self.send_file(path.read_bytes(), path.name)
+            self.set_header("X-Frame-Options", "SAMEORIGIN")
+        try:
+            content = await asyncio.to_thread(path.read_bytes)
+        except OSError:
+            raise HTTPError(404) from None
+        self.send_file(content, path.name)
+
+
+class ShowHandler(FileHandler):
+    """A report in a frame: the policy around it lets no script in it lead the frame elsewhere."""
+
+    async def get(self, token: str) -> None:
+        """The page around it."""
+        path = self.path(token)
+        self.set_header("Content-Security-Policy", FRAME_POLICY)
+        self.send_file(FRAME.format(address=f"/files/{token}", title=path.stem).encode(), "frame.html")
 
 
 @stream_request_body
@@ -132,6 +189,8 @@ class UploadHandler(Guarded):
             await session.upload(lambda place: asyncio.to_thread(unpack, split(bytes(self._body)), place))
         except InputError as error:
             raise HTTPError(400, log_message=str(error).replace("%", "%%")) from None
+        except OSError as error:
+            raise HTTPError(400, log_message=f"the recording cannot be kept here ({error.strerror})") from None
         self.finish("")
 
 
@@ -146,22 +205,28 @@ class SocketHandler(Guarded, WebSocketHandler):
         return self.tabs.guard.refusal({**self.request.headers, "Origin": origin}, None, needs_origin=True) is None
 
     async def open(self, *_: str) -> None:
-        """A tab is there."""
+        """A tab is there. It may be gone again before its form is made."""
+        tab = self.get_query_argument("tab", "") or None
         try:
-            self.session = self.tabs.session(self.get_query_argument("tab", "") or None)
-        except InputError as error:
-            self._send({"tell": "said", "text": str(error), "bad": True})
+            self.session = session = self.tabs.session(tab, self.get_query_argument("copy", "") == "1")
+        except (InputError, OSError) as error:
+            said = str(error) if isinstance(error, InputError) else f"no folder can be made here ({error.strerror})"
+            self._send({"tell": "said", "text": said, "bad": True})
             self.close()
             return
-        session = self.session
-        session.send = self._send
         self._send({"tell": "tab", "name": session.name})
-        self._send({"tell": "form", **await self.tabs.form()})
         session.attach(self._send)
+        self._form = asyncio.create_task(self._send_form(session))
+
+    async def _send_form(self, session: Session) -> None:
+        try:
+            self._send({"tell": "form", **await self.tabs.form()})
+        except (MachineError, TaskRefused) as error:
+            session.say(f"the form could not be made: {error}; load the page again")
 
     def on_message(self, message: str | bytes) -> None:
-        """One request."""
-        if self.session is None:
+        """One request; of a tab that another one has followed, nothing."""
+        if self.session is None or self.session.line != self._send:
             return
         try:
             asked = json.loads(message)
@@ -171,12 +236,14 @@ class SocketHandler(Guarded, WebSocketHandler):
 
     def on_close(self) -> None:
         """A tab is gone, or loads again."""
-        if self.session is not None:
+        if self.session is not None and self.session.line == self._send:
             self.tabs.left(self.session)
 
     def _send(self, message: dict[str, Any]) -> None:
         with suppress(WebSocketClosedError):
-            self.write_message(json.dumps(message))
+            content = packed(message)
+            sent = asyncio.ensure_future(self.write_message(content, binary=isinstance(content, bytes)))
+            sent.add_done_callback(lambda done: done.cancelled() or done.exception())  # the tab may be gone
 
 
 def application(tabs: Tabs) -> Application:
@@ -185,10 +252,12 @@ def application(tabs: Tabs) -> Application:
     return Application(
         [
             ("/", PageHandler, shared),
+            ("/greeting", GreetingHandler, shared),
             ("/socket", SocketHandler, shared),
             ("/upload", UploadHandler, shared),
-            (r"/assets/([\w-]+\.\w+)", AssetHandler, shared),
+            (r"/assets/([\w.-]+)", AssetHandler, shared),
             (r"/files/([\w-]+/[\w.-]+)", FileHandler, shared),
+            (r"/show/([\w-]+/[\w-]+\.html)", ShowHandler, shared),
         ],
         default_handler_class=MissingHandler,
         default_handler_args=shared,

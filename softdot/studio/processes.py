@@ -2,30 +2,44 @@
 
 A task is a function below softdot.studio.work with plain arguments, and tell where it takes long: called with how far
 it is. It is named ("press:coarse_press"), so that the process of the page loads no solver, and runs in a process of
-its own, so that the page answers meanwhile, a crash costs that task alone, and cancelling is ending the
-process: a library in the middle of a factorisation asks nobody.
+its own, so that the page answers meanwhile, a crash costs that task alone. A task that is cancelled is asked to
+stop at its next step, so that its process stays loaded; one that does not is ended with its process.
 """
 
 import asyncio
 import logging
-from collections.abc import Callable, Sequence
+import signal
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future
 from contextlib import suppress
+from functools import partial
 from importlib import import_module
 from inspect import signature
+from threading import Event
 from typing import Any
 
 from foundation.errors import InputError
 from foundation.library_loading import without_garbage_collection
-from foundation.worker_process import Tell, WorkerProcess
+from foundation.worker_process import ProcessDiedError, Tell, WorkerProcess
+from softdot.studio.admission import Admission
 
 LOG = logging.getLogger(__name__)
 WORK = "softdot.studio.work"
 WAITING, MOST_WAITING = 1, 2
 """Processes that wait with everything loaded, so that a press after a cancelled one begins at once."""
+LONGEST_LOAD_S = 240.0
+"""For a process to load its libraries, on a machine with much else to do; 3 s on one that is idle."""
+LONGEST_STOP_S = 2.0
+"""For a task that is asked to stop; after it its process is ended."""
+LOADING = {"progress": {"stage": "loading", "done": 0, "count": 0, "left_s": None}}
 
 
 class TaskRefused(Exception):
     """Bad input, or a computation that has no result: one sentence for the page."""
+
+
+class MachineError(Exception):
+    """A task without an answer for reasons of this machine, also after it was begun again: one sentence."""
 
 
 class Worker(WorkerProcess):
@@ -34,20 +48,39 @@ class Worker(WorkerProcess):
     def __init__(self, warm_up: str) -> None:
         """warm_up : done before the first task, so that that is quick."""
         super().__init__()
-        self.begin(load, warm_up)
+        self._loaded = self.begin(load, warm_up)
+        self._task: Future[Any] | None = None
+
+    @property
+    def is_warm(self) -> bool:
+        """Whether a task begins at once."""
+        return self.is_alive and self._loaded.done()
+
+    async def until_warm(self) -> None:
+        """Wait for its libraries. ProcessDiedError, TimeoutError."""
+        await asyncio.wait_for(asyncio.shield(asyncio.wrap_future(self._loaded)), LONGEST_LOAD_S)
 
     async def run(self, task: str, *arguments: Any, tell: Tell = lambda _: None) -> Any:
-        """What the task returns. TaskRefused, ProcessDiedError; where the waiting is cancelled, the process ends."""
+        """What the task returns; it goes on where the waiting is cancelled. TaskRefused, ProcessDiedError."""
         loop = asyncio.get_running_loop()
 
         def told(value: Any) -> None:
             loop.call_soon_threadsafe(tell, value)
 
-        try:
-            return await asyncio.wrap_future(self.begin(do_task, task, arguments, tell=told))
-        except asyncio.CancelledError:
-            self.end()
-            raise
+        self._task = self.begin(do_task, task, arguments, tell=told)
+        waiting = asyncio.wrap_future(self._task)
+        waiting.add_done_callback(lambda done: done.cancelled() or done.exception())  # nobody may wait any more
+        return await asyncio.shield(waiting)
+
+    async def stops(self) -> bool:
+        """Whether the task stops soon when it is asked to, so that the process can be used again."""
+        if self._task is None or self._task.done():
+            return self.is_alive
+        if not self.interrupt():
+            return False
+        with suppress(Exception):
+            await asyncio.wait_for(asyncio.shield(asyncio.wrap_future(self._task)), LONGEST_STOP_S)
+        return self._task.done() and self.is_alive
 
 
 class InTurn:
@@ -56,24 +89,46 @@ class InTurn:
     def __init__(self, warm_up: str, longest_s: float) -> None:
         self._warm_up, self._longest_s = warm_up, longest_s
         self._worker: Worker | None = None
+        self._last: asyncio.Task[Any] | None = None
         self._lock = asyncio.Lock()
 
-    def prepare(self) -> None:
-        """Start the process."""
+    @property
+    def is_warm(self) -> bool:
+        """Whether a task begins at once."""
+        return self._worker is not None and self._worker.is_warm
+
+    def prepare(self) -> Worker:
+        """Start the process where there is none."""
         if self._worker is None or not self._worker.is_alive:
             self._worker = Worker(self._warm_up)
+        return self._worker
 
     async def run(self, task: str, *arguments: Any) -> Any:
-        """As Worker.run; where the waiting is cancelled, the process goes on. TimeoutError after longest_s."""
-        running = asyncio.create_task(self._run(task, *arguments))
-        running.add_done_callback(lambda done: done.cancelled() or done.exception())  # nobody may wait any more
-        return await asyncio.shield(running)
+        """As Worker.run, in a process that has loaded, for longest_s; then once more in a new one. TaskRefused,
+        MachineError.
 
-    async def _run(self, task: str, *arguments: Any) -> Any:
+        Where the waiting is cancelled, a task that has begun goes on, and one that waits is forgotten.
+        """
         async with self._lock:
-            self.prepare()
-            assert self._worker is not None
-            return await asyncio.wait_for(self._worker.run(task, *arguments), self._longest_s)
+            if self._last is not None:
+                await asyncio.wait([self._last])
+            self._last = asyncio.create_task(self._twice(task, *arguments))
+            self._last.add_done_callback(lambda done: done.cancelled() or done.exception())
+            return await asyncio.shield(self._last)
+
+    async def _twice(self, task: str, *arguments: Any) -> Any:
+        said = ""
+        for _ in range(2):
+            worker = self.prepare()
+            try:
+                await worker.until_warm()
+                return await asyncio.wait_for(worker.run(task, *arguments), self._longest_s)
+            except TimeoutError:
+                said = f"this machine did not answer within {self._longest_s:.0f} s, twice; it has much else to do"
+            except ProcessDiedError:
+                said = "the process that checks designs was ended twice by this machine; its memory may be short"
+            worker.end()
+        raise MachineError(said)
 
     def end(self) -> None:
         """At once."""
@@ -84,10 +139,12 @@ class InTurn:
 class Pool:
     """Processes that are alike. Each task has one to itself; one more waits, or two, and the others are ended."""
 
-    def __init__(self, warm_up: str) -> None:
-        self._warm_up = warm_up
+    def __init__(self, warm_up: str, rooms: Mapping[str, Admission]) -> None:
+        """rooms : how many tasks of each kind may run at once."""
+        self._warm_up, self._rooms = warm_up, rooms
         self._idle: list[Worker] = []
         self._busy: list[Worker] = []
+        self._stopping: set[asyncio.Task[None]] = set()
 
     def prepare(self) -> None:
         """Start a process that waits for a task, where there is none."""
@@ -95,20 +152,57 @@ class Pool:
         while len(self._idle) < WAITING:
             self._idle.append(Worker(self._warm_up))
 
-    async def run(self, task: str, *arguments: Any, tell: Tell = lambda _: None) -> Any:
-        """As Worker.run, in a process that is free, or in a new one."""
+    async def run(
+        self, room: str, task: str, *arguments: Any, need_GB: float = 0.0, tell: Tell = lambda _: None
+    ) -> Any:
+        """As Worker.run, in the warmest process that is free, once there is room; begun again once where its process
+        dies. TaskRefused, MachineError.
+        """
+        async with self._rooms[room].place(need_GB, tell):
+            for _ in range(2):
+                with suppress(ProcessDiedError, TimeoutError):
+                    return await self._run(task, *arguments, tell=tell)
+        raise MachineError("its process was ended twice by this machine, whose memory may be short; it was not done")
+
+    async def _run(self, task: str, *arguments: Any, tell: Tell) -> Any:
         self.prepare()
-        worker = self._idle.pop(0)
+        worker = next((one for one in self._idle if one.is_warm), self._idle[0])
+        self._idle.remove(worker)
         self._busy.append(worker)
-        self.prepare()
         try:
-            return await worker.run(task, *arguments, tell=tell)
-        finally:
-            self._busy.remove(worker)
-            if worker.is_alive and len(self._idle) < MOST_WAITING:
-                self._idle.append(worker)
-            else:
+            if not worker.is_warm:
+                tell(LOADING)
+                await worker.until_warm()
+            self.prepare()  # the next one loads once this one has, so that the first press has the cores
+            found = await worker.run(task, *arguments, tell=tell)
+        except asyncio.CancelledError:
+            stopping = asyncio.create_task(self._stop(worker))
+            self._stopping.add(stopping)
+            stopping.add_done_callback(self._stopping.discard)
+            raise
+        except BaseException as error:
+            if isinstance(error, TimeoutError):  # it does not load
                 worker.end()
+            self._put_back(worker)
+            raise
+        self._put_back(worker)
+        return found
+
+    async def _stop(self, worker: Worker) -> None:
+        if not await worker.stops():
+            worker.end()
+        self._put_back(worker)
+
+    def _put_back(self, worker: Worker) -> None:
+        """A warm process that is free again stands before those that load."""
+        self._busy.remove(worker)
+        if worker.is_alive and (len(self._idle) < MOST_WAITING or not all(one.is_warm for one in self._idle)):
+            self._idle.insert(0, worker)
+        else:
+            worker.end()
+        for other in self._idle[MOST_WAITING:]:
+            other.end()
+        del self._idle[MOST_WAITING:]
 
     def end(self) -> None:
         """All of them."""
@@ -117,7 +211,8 @@ class Pool:
 
 
 def load(warm_up: str) -> None:
-    """In the process: load what its tasks need."""
+    """In the process: load what its tasks need, and let tasks be asked to stop."""
+    signal.signal(signal.SIGINT, lambda *_: STOP.set())
     with without_garbage_collection(), suppress(Exception):
         named(warm_up)()
 
@@ -129,6 +224,23 @@ def named(task: str) -> Callable[..., Any]:
     return found
 
 
+STOP = Event()
+"""In the process: its task is to stop where it next tells how far it is, between two steps, so that no library is left
+in the middle of something.
+"""
+
+
+class StopTask(BaseException):
+    """A task has been asked to stop; no handler of errors on the way is meant."""
+
+
+def tell_unless_stopped(tell: Tell, value: Any) -> None:
+    """Tell how far a task is, or end it there. StopTask."""
+    if STOP.is_set():
+        raise StopTask
+    tell(value)
+
+
 def do_task(task: str, arguments: Sequence[Any], tell: Tell) -> Any:
     """In the process: do a task. TaskRefused with one sentence, and the traceback of a mistake of ours in the log."""
     from mesh.types import MeshingError
@@ -138,10 +250,13 @@ def do_task(task: str, arguments: Sequence[Any], tell: Tell) -> Any:
     from solve.solution.full_load import StoppedShortError
     from solve.solution.linear import LinearSolveError
 
+    STOP.clear()
     try:
         function = named(task)
-        told = {"tell": tell} if "tell" in signature(function).parameters else {}
+        told = {"tell": partial(tell_unless_stopped, tell)} if "tell" in signature(function).parameters else {}
         return function(*arguments, **told)
+    except StopTask:
+        raise TaskRefused("cancelled") from None
     except InputError as error:
         raise TaskRefused(str(error)) from None
     except MeshingError as error:

@@ -5,76 +5,84 @@ import secrets
 import shutil
 import time
 from collections.abc import Awaitable, Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from foundation.errors import InputError
-from foundation.worker_process import ProcessDiedError
-from softdot.studio.autosave import Autosave
-from softdot.studio.comparison import compared
-from softdot.studio.document import Document
-from softdot.studio.following import Follower, Json
-from softdot.studio.processes import InTurn, Pool, TaskRefused
+from softdot.studio.design_facts import Json, Origin
+from softdot.studio.design_state import DesignState
+from softdot.studio.document import dotted_key
+from softdot.studio.following import Follower, Studio
+from softdot.studio.kept_designs import KeptDesigns
+from softdot.studio.large_messages import large_messages
+from softdot.studio.processes import MachineError, TaskRefused
 
-MOST_KEPT = 4
 ON_DESIGN = {"influences": "influences:influences", "tolerances": "influences:tolerances_of_making"}
 INTO_FOLDER = {"kit": "files:kit", "report": "files:report"}
 """Long work that a tab may start: on the design alone, and into a folder."""
-
-
-@dataclass(frozen=True)
-class Studio:
-    """What all tabs share. draw : the parts; check : designs and circuits; solve : presses and long work."""
-
-    draw: InTurn
-    check: InTurn
-    solve: Pool
-    autosave: Autosave
-    scratch: Path
+QUICK = {"influences", "recording"}
+"""Those that take seconds, and so do not queue behind those that take minutes."""
+MADE_BY = {"diagnosis": "verdict"}
+"""Artefacts that are not called as the task that makes them."""
 
 
 class Session:
-    """A design and its work. send : to its tab, None while there is none."""
+    """A design and its work. line : sends to its tab, None while there is none."""
 
     def __init__(self, name: str, text: str, studio: Studio) -> None:
         self.name, self._studio = name, studio
-        self.send: Callable[[Json], None] | None = None
+        self.line: Callable[[Json], None] | None = None
         self.files: dict[str, Path] = {}
-        self._document = Document(text)
-        self._follower = Follower(self._document, studio.draw, studio.check, studio.solve, self.tell)
-        self._last: dict[str, Json] = {}
-        self._kept: list[Json] = []
+        self.state = DesignState(text)
+        self._follower = Follower(self.state, studio, self.changed)
+        self._sent: dict[str, Any] = {}
+        self._serial, self._heard, self._is_due = 0, 0, False
+        self._kept = KeptDesigns()
         self._recording: Path | None = None
         self._improved: str | None = None
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._folder = studio.scratch / name
         self._folder.mkdir(mode=0o700, exist_ok=True)
-        self._touch()
+        self.state.saved = studio.autosave.save(name, text)
+        self._follower.touch()
 
     @property
     def text(self) -> str:
         """Of the design."""
-        return self._document.text
+        return self.state.text
 
-    def attach(self, send: Callable[[Json], None]) -> None:
-        """A tab is there: tell it everything."""
-        self.send = send
-        self._tell_document()
-        for message in list(self._last.values()):
-            send(message)
-        self._tell_kept()
-        send({"tell": "earlier", "designs": self._studio.autosave.earlier(without={self.name})})
+    def attach(self, line: Callable[[Json], None]) -> None:
+        """A tab is there: tell it everything. One that was there before is told that it is not any more."""
+        if self.line is not None:
+            self.line({"tell": "elsewhere"})
+        self.line, self._sent = line, {}
+        line({"tell": "earlier", "designs": self._studio.autosave.earlier(without={self.name})})
+        self._tell_all()
 
-    def tell(self, kind: str, again: bool = False, **content: Any) -> None:
-        """A message to the tab; again : repeated to a tab that comes back."""
-        message = {"tell": kind, **content}
-        if kind == "curves":
-            self._renew_kept()
-        if again:
-            self._last[f"{kind} {content.get('task', '')}"] = message
-        if self.send is not None:
-            self.send(message)
+    def changed(self) -> None:
+        """Tell the tab, once for all that changes in the same moment."""
+        if not self._is_due:
+            self._is_due = True
+            asyncio.get_running_loop().call_soon(self._tell_all)
+
+    def _tell_all(self) -> None:
+        """What is new of the artefacts, then the whole state."""
+        self._is_due = False
+        if self.line is None:
+            return
+        self._kept.renew(self.state)
+        for name, (version, message) in {**large_messages(self.state), "kept": self._kept.message()}.items():
+            if self._sent.get(name) != version:
+                self._sent[name] = version
+                self.line({"tell": name, **message()})
+        self._serial += 1
+        numbers = {"serial": self._serial, "heard": self._heard}
+        self.line({"tell": "state", **numbers, **self.state.told(), "kept": self._kept.names()})
+
+    def say(self, text: str, bad: bool = True) -> None:
+        """A sentence that answers what was asked, and is no part of the state."""
+        if self.line is not None:
+            self.line({"tell": "said", "text": text, "bad": bad})
 
     def close(self) -> None:
         """Give up all work; the design stays on disk."""
@@ -87,13 +95,17 @@ class Session:
         """What a tab asks for. One sentence goes back for what is refused."""
         try:
             action = getattr(self, f"do_{message.pop('do')}", None)
+            number = message.pop("n", None)
+            if type(number) is int:
+                self._heard = number
             if action is None:
                 raise TypeError
             action(**message)
         except InputError as error:
-            self.tell("said", text=str(error), bad=True)
+            self.say(str(error))
         except (AttributeError, IndexError, KeyError, TypeError, ValueError):
-            self.tell("said", text="the page asked for something that cannot be; reload it", bad=True)
+            self.say("the page asked for something that cannot be; reload it")
+        self.changed()
 
     # What a tab may ask for: {"do": NAME, ...} calls do_NAME.
 
@@ -101,35 +113,36 @@ class Session:
         """One value of the design; None takes its key out. joined : it goes on with the last change."""
         if not 0 < len(key) <= 8 or any(type(part) not in (str, int) for part in key):
             raise InputError("there is no such key")
-        self._document.set(key, value, joined)
-        self._touch(circuit_first=key[0] == "readout")
+        self.state.document.set(key, value, joined)
+        self._follower.has_moved(dotted_key(key))
+        self._edited(circuit_alone=key[0] == "readout")
 
     def do_change(self, changes: list[list[Any]]) -> None:
         """Several values as one change."""
         for number, (key, value) in enumerate(changes):
-            self._document.set(key, value, joined=number > 0)
-        self._touch()
+            self.state.document.set(key, value, joined=number > 0)
+        self._edited()
 
     def do_text(self, text: str) -> None:
         """The whole text, as written in the page or imported."""
         if "\0" in text:
             raise InputError("a design must be text without NUL characters")
-        self._document.write(text)
-        self._touch()
+        self.state.document.write(text)
+        self._edited()
 
     def do_undo(self) -> None:
         """One change back."""
-        self._document.undo()
-        self._touch()
+        self.state.document.undo()
+        self._edited()
 
     def do_redo(self) -> None:
         """One change forward."""
-        self._document.redo()
-        self._touch()
+        self.state.document.redo()
+        self._edited()
 
     def do_reset(self) -> None:
         """To the design with which the tab began."""
-        self.do_text(self._document.start)
+        self.do_text(self.state.document.start)
 
     def do_restore(self, name: str) -> None:
         """A design that was saved before."""
@@ -140,24 +153,23 @@ class Session:
 
     def do_keep(self, name: str) -> None:
         """Keep the present design for the comparison."""
-        known = self._follower.known
-        if len(self._kept) >= MOST_KEPT:
-            raise InputError(f"{MOST_KEPT} designs are compared at most; take one out first")
-        if known.state.get("press_hash") is None:
-            raise InputError("a design with mistakes cannot be compared")
-        words = str(name)[:60].strip() or f"design {len(self._kept) + 1}"
-        kept = {"name": words, "text": self.text, "numbers": known.numbers}
-        self._kept.append(kept | {key: known.state[key] for key in ("values", "press_hash")})
-        self._tell_kept()
+        self._kept.keep(self.state, str(name))
+
+    def do_rename(self, number: int, name: str) -> None:
+        """Call a kept design otherwise."""
+        self._kept.rename(number, str(name))
+
+    def do_hide(self, number: int, hidden: bool) -> None:
+        """Draw a kept design, or do not; it stays in the list."""
+        self._kept.hide(number, bool(hidden))
 
     def do_drop(self, number: int) -> None:
         """Take a design out of the comparison."""
-        del self._kept[number]
-        self._tell_kept()
+        self._kept.drop(number)
 
     def do_take(self, number: int) -> None:
         """Go on with a design of the comparison."""
-        self.do_text(self._kept[number]["text"])
+        self.do_text(self._kept.text(number))
 
     def do_press(self) -> None:
         """Press the present design again, or where its press was cancelled."""
@@ -193,35 +205,32 @@ class Session:
         self.do_text(self._improved)
 
     async def upload(self, unpack: Callable[[Path], Awaitable[Path]]) -> None:
-        """A recording: unpack writes it into an empty folder and returns where its rig.toml is. InputError."""
-        self._recording = None  # until it has been read, and so been checked
-        place = await unpack(Path(self._new_folder("recording")))
+        """A recording: unpack writes it into an empty folder and returns where its rig.toml is. InputError.
+
+        The recording before is gone, also where this one is refused, of which nothing is left on disk.
+        """
+        for task in ("recording", "diagnosis"):
+            if task in self._tasks:
+                self._tasks[task].cancel()
+        self._recording, self._improved = None, None
+        self.state.dropped("recording", "diagnosis", "verdict")
+        self.changed()
+        folder = Path(self._new_folder("recording"))
+        try:
+            place = await unpack(folder)
+        except BaseException:
+            shutil.rmtree(folder, ignore_errors=True)
+            raise
         self._begin("recording", "recording:read", str(place))
 
     # What follows from it.
 
-    def _touch(self, circuit_first: bool = False) -> None:
-        """The design is another one."""
-        self._studio.autosave.save(self.name, self.text)
-        self._tell_document()
-        self._follower.touch(circuit_first)
-
-    def _tell_document(self) -> None:
-        document = self._document
-        undo, redo, reset = document.can_undo, document.can_redo, document.text != document.start
-        self.tell("document", text=document.text, undo=undo, redo=redo, reset=reset)
-
-    def _renew_kept(self) -> None:
-        """The accurate press of a design that was kept with its coarse one takes its place."""
-        now = self._follower.known.curves[-1]
-        same = [one for one in self._kept if one["press_hash"] == now["press_hash"]]
-        for one in same:
-            one["numbers"] = now["numbers"]
-        if same:
-            self._tell_kept()
-
-    def _tell_kept(self) -> None:
-        self.tell("kept", names=[one["name"] for one in self._kept], rows=compared(self._kept), most=MOST_KEPT)
+    def _edited(self, circuit_alone: bool = False) -> None:
+        """The design may be another one."""
+        if self.state.is_edited:
+            self.state.edited(circuit_alone)
+            self.state.saved = self._studio.autosave.save(self.name, self.text)
+            self._follower.touch(circuit_alone)
 
     def _new_folder(self, task: str) -> str:
         folder = self._folder / f"{task}-{secrets.token_hex(4)}"
@@ -235,30 +244,39 @@ class Session:
 
     async def _work(self, task: str, function: str, *arguments: Any) -> None:
         """A task in a process of its own; what it makes can be downloaded."""
+        origin, started = self.state.present, time.monotonic()
 
         def on_way(told: Json) -> None:
             if "progress" in told:
-                self.tell("progress", task=task, **told["progress"])
+                self._tell_task(task, origin, "running", progress=told["progress"])
             else:
-                self.tell("done", again=True, task=task, result=self._offered(told))
+                self.state.made(MADE_BY.get(task, task), origin, {"result": self._offered(told)})
+                self.changed()
 
-        self.tell("progress", task=task, stage="start", done=0, count=0, left_s=None)
-        started = time.monotonic()
+        self._tell_task(task, origin, "running", progress={"stage": "start", "done": 0, "count": 0, "left_s": None})
         try:
-            found = await self._studio.solve.run(function, *arguments, tell=on_way)
-            if task == "recording":
-                self._recording = Path(arguments[0])
-            self._improved = found.get("improved") or self._improved
-            took = time.monotonic() - started
-            self.tell("done", again=True, task=task, result=self._offered(found), took_s=took)
-            self.tell("ended", task=task)
+            room, need = ("press", 0.0) if task in QUICK else ("long", self.state.need_GB)
+            found = await self._studio.solve.run(room, function, *arguments, need_GB=need, tell=on_way)
+            self._keep_result(task, arguments, found)
+            made = {"result": self._offered(found), "took_s": time.monotonic() - started}
+            self.state.made(MADE_BY.get(task, task), origin, made)
+            self._tell_task(task, origin, "done", took_s=made["took_s"])
         except asyncio.CancelledError:
-            self.tell("ended", task=task, said="cancelled")
+            self._tell_task(task, origin, "cancelled", said="cancelled")
             raise
-        except (TaskRefused, ProcessDiedError) as error:
-            lost = isinstance(error, ProcessDiedError)
-            said = "its process ended before it was done; the design is as it was" if lost else str(error)
-            self.tell("ended", task=task, said=said, bad=True)
+        except TaskRefused as error:
+            self._tell_task(task, origin, "failed", said=str(error))
+        except MachineError as error:
+            self._tell_task(task, origin, "failed", said=f"{error}; the design is as it was")
+
+    def _keep_result(self, task: str, arguments: tuple[Any, ...], found: Json) -> None:
+        if task == "recording":
+            self._recording = Path(arguments[0])
+        self._improved = found.get("improved") or self._improved
+
+    def _tell_task(self, task: str, origin: Origin, how: str, **more: Any) -> None:
+        self.state.tasks[task] = {"is": how, "revision": origin.revision, **more}
+        self.changed()
 
     def _offered(self, found: Json) -> Json:
         """The result with addresses instead of paths."""
@@ -270,6 +288,6 @@ class Session:
     def _address(self, path: str) -> str:
         """Of a file that was made here; only such are served."""
         known = {str(place): token for token, place in self.files.items()}
-        token = known.get(path, f"{secrets.token_urlsafe(16)}/{Path(path).name}")
+        token = known.get(path, f"{secrets.token_urlsafe(32)}/{Path(path).name}")
         self.files[token] = Path(path)
         return token

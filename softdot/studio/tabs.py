@@ -6,8 +6,9 @@ from typing import Any
 
 from foundation.errors import InputError
 from softdot.studio.autosave import new_name
+from softdot.studio.following import Studio
 from softdot.studio.guard import Guard
-from softdot.studio.session import Session, Studio
+from softdot.studio.session import Session
 
 MOST_TABS = 12
 FIRST_PARTS_S = 1.0
@@ -37,17 +38,19 @@ class Tabs:
         asyncio.get_running_loop().call_later(FIRST_PARTS_S, self.studio.solve.prepare)
         return found
 
-    def session(self, name: str | None) -> Session:
-        """The design of a tab that comes back, also after a crash; else a new one. InputError for too many."""
+    def session(self, name: str | None, is_copy: bool) -> Session:
+        """The design of a tab that comes back, also after a crash; else a new one. InputError for too many.
+
+        is_copy : the tab was made as a copy of another one, which may still be open.
+        """
         known = self.sessions.get(name or "")
-        if known is not None and known.send is None:
+        if known is not None and not (is_copy and known.line is not None):
             return known
-        if len(self.sessions) >= MOST_TABS:
-            raise InputError(f"{MOST_TABS} designs are open, which is the most; close a tab")
+        self._make_room()
         saved = None
         with suppress(InputError):
             saved = self.studio.autosave.load(name) if name else None
-        if known is not None:  # a copy of a tab that is still open
+        if known is not None:
             made = Session(new_name(), known.text, self.studio)
         elif name and saved is not None:
             made = Session(name, saved, self.studio)
@@ -56,13 +59,22 @@ class Tabs:
         self.sessions[made.name] = made
         return made
 
+    def _make_room(self) -> None:
+        """The design that was left first makes room for a new one. InputError where all have a tab."""
+        if len(self.sessions) < MOST_TABS:
+            return
+        left = next((one for one in self.sessions.values() if one.line is None), None)
+        if left is None:
+            raise InputError(f"{MOST_TABS} designs are open, which is the most; close a tab")
+        self._forget(left)
+
     def left(self, session: Session) -> None:
         """A tab is gone: give up its work unless it comes back soon."""
-        session.send = None
+        session.line = None
         asyncio.get_running_loop().call_later(GRACE_S, self._forget, session)
 
     def _forget(self, session: Session) -> None:
-        if session.send is None and self.sessions.get(session.name) is session:
+        if session.line is None and self.sessions.get(session.name) is session:
             del self.sessions[session.name]
             session.close()
 

@@ -20,6 +20,10 @@ DIFFERENCE_STEP_MM = 1e-6
 """Step of the central differences of a dot's radius."""
 
 
+PERMITTIVITY_ROW = "permittivity of the film"
+"""The constant that moves the voltage V = Q / C and not the charge."""
+
+
 @dataclass(frozen=True)
 class Tolerance:
     """A quantity and how far it may be off.
@@ -161,7 +165,7 @@ def _film(config: Config) -> list[Tolerance]:
     )  # fmt: skip
     return [
         _percent_row("piezoelectric constants of the film", rows["d31"], factor_key(config, "film", "d31_factor")),
-        _percent_row("permittivity of the film", rows["permittivity"], permittivity, nominal),
+        _percent_row(PERMITTIVITY_ROW, rows["permittivity"], permittivity, nominal),
         height,
     ]
 

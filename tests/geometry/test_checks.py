@@ -6,7 +6,7 @@ import pytest
 from foundation.errors import InputError
 from geometry.checks import check_press_depth, check_segment, press_warnings
 from geometry.dot_at_rest import resolve_dot
-from geometry.parameters import Bond, Dot, Effector, Electrode, Film
+from geometry.parameters import Bond, Dot, Effector, Electrode, Film, Medium
 from tests.cases import for_each
 
 
@@ -93,6 +93,14 @@ REFUSED = {
         {"bonds": bonds(("film", "film"))},
         "segment.bonds[0].between = 'film' and 'film': must be two neighbours in the order base, medium2, "
         "film, medium1, effector",
+    ),
+    "a layer of atoms": (
+        {"effector": None, "medium1": Medium(material="rubber", thickness_mm=1e-9)},
+        "segment.medium1.thickness_mm = 1e-09: must be at least 0.0001",
+    ),
+    "a segment as long as a country": (
+        {"length_mm": 1e9},
+        "segment.length_mm = 1e+09: must be at most 1000",
     ),
     "bond to nothing": (
         {"effector": None, "bonds": bonds(("base", "medium2"), ("effector", "medium1"))},

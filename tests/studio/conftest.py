@@ -1,6 +1,7 @@
 """A studio in a process of its own, and tabs of a browser that look at it."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -94,11 +95,13 @@ class Tab:
         self.page.on("pageerror", lambda error: self.wrong.append(str(error)))
         self.page.on("console", self._hear)
         self.page.goto(address)
-        self.page.locator("#form .field").first.wait_for()
+        self.page.locator("#form .field").first.wait_for(state="attached", timeout=120_000)
+        if self.page.locator("#start").is_visible():  # a tab with the default design begins there
+            self.page.locator("#start .go").click()
 
     def _hear(self, said: Any) -> None:
         """An error; that a studio which has ended does not answer is none."""
-        if said.type == "error" and "WebSocket connection" not in said.text:
+        if said.type == "error" and not re.search("WebSocket connection|ERR_CONNECTION_REFUSED", said.text):
             self.wrong.append(said.text)
 
     def pressed(self, timeout_s: float = 60.0) -> None:
@@ -107,7 +110,21 @@ class Tab:
 
     def says(self, selector: str, text: str, timeout_s: float = 20.0) -> None:
         """Wait until an element holds a text."""
-        self.page.locator(selector).filter(has_text=text).first.wait_for(timeout=1e3 * timeout_s)
+        place = self.page.locator(selector)
+        try:
+            place.filter(has_text=text).first.wait_for(timeout=1e3 * timeout_s)
+        except Exception as error:  # that of playwright, which need not be installed
+            raise AssertionError(f"{selector} says {place.all_inner_texts()}, and the head says {self.head}") from error
+
+    @property
+    def head(self) -> str:
+        """What stands above the page of link and machine."""
+        return self.page.locator("#link").inner_text()
+
+    def write(self, text: str) -> None:
+        """Another design as TOML."""
+        self.page.get_by_role("tab", name="TOML").click()
+        self.page.locator("#text").fill(text)
 
     @property
     def text(self) -> str:

@@ -194,6 +194,13 @@ def test_an_endless_header_is_cut(studio):
     assert asked(studio, f"/?key={studio.key}")[0] == 200
 
 
+def heard(message):
+    """What the program tells; of a frame with arrays its head."""
+    if isinstance(message, bytes):
+        return json.loads(message[4 : 4 + int.from_bytes(message[:4], "little")])
+    return json.loads(message)
+
+
 def spoken(studio, *messages, answers):
     """What the socket tells after some messages, the first of each kind in answers."""
 
@@ -202,8 +209,8 @@ def spoken(studio, *messages, answers):
         address = f"ws://127.0.0.1:{studio.port}/socket?key={studio.key}&tab={tab}"
         line = await websocket_connect(HTTPRequest(address, headers={"Origin": origin(studio)}))
         found = {}
-        while "document" not in found:
-            told = json.loads(await line.read_message())
+        while "state" not in found:
+            told = heard(await line.read_message())
             found[told["tell"]] = told
         studio.tab = found["tab"]["name"]
         found.pop("said", None)
@@ -216,7 +223,7 @@ def spoken(studio, *messages, answers):
             told = await line.read_message()
             if told is None:
                 return {"closed": True}
-            told = json.loads(told)
+            told = heard(told)
             found[told["tell"]] = told
         line.close()
         return found
@@ -268,9 +275,9 @@ def test_a_design_of_somebody_else_reads_no_file_outside(studio, name, key):
     shape = 'shape = "file"\n' if key != "mesh" else ""
     text = f"[{key}]\n{shape}file = {json.dumps(name)}\n"
     found = spoken(studio, json.dumps({"do": "text", "text": text}), answers=["state"])
-    while not found["state"]["mistakes"]:  # of the design before
-        found = spoken(studio, json.dumps({"do": "text", "text": text}), answers=["state", "state"])
-    assert "must be below the folder in which the studio was started" in found["state"]["mistakes"][0]
+    while not found["state"]["design"]["mistakes"]:  # it is being checked
+        found = spoken(studio, answers=["state"])
+    assert "must be below the folder in which the studio was started" in found["state"]["design"]["mistakes"][0]
 
 
 def test_tabs_are_bounded(start_studio):
@@ -346,7 +353,7 @@ def test_the_key_is_no_argument_of_the_browser_and_its_file_is_closed_to_others(
 def test_saved_designs_are_closed_to_others_and_the_log_holds_no_key(start_studio):
     running = start_studio()
     assert asked(running, "/?key=wrong")[0] == 403
-    spoken(running, answers=["document"])
+    spoken(running, answers=["state"])
     designs = running.folder / "designs"
     assert stat.S_IMODE(designs.stat().st_mode) == 0o700
     assert len(list(designs.glob("*.toml"))) == 1
@@ -391,17 +398,17 @@ def test_a_recording_of_somebody_else_reads_no_file_outside(studio, tmp_path):
     async def talk():
         address = f"ws://127.0.0.1:{studio.port}/socket?key={studio.key}&tab={getattr(studio, 'tab', '')}"
         line = await websocket_connect(HTTPRequest(address, headers={"Origin": origin(studio)}))
-        told = json.loads(await line.read_message())
+        told = heard(await line.read_message())
         sent = HTTPRequest(
             f"{origin(studio)}/upload?key={studio.key}&tab={told['name']}", "POST", {"Origin": origin(studio)}, body
         )
         assert (await AsyncHTTPClient().fetch(sent)).code == 200
-        while told["tell"] != "ended" or told["task"] != "recording":
-            told = json.loads(await line.read_message())
-        refused = told["said"]
+        while told["tell"] != "state" or told["tasks"].get("recording", {}).get("is") != "failed":
+            told = heard(await line.read_message())
+        refused = told["tasks"]["recording"]["said"]
         await line.write_message(json.dumps({"do": "start", "task": "diagnosis"}))
         while told["tell"] != "said":
-            told = json.loads(await line.read_message())
+            told = heard(await line.read_message())
         line.close()
         return refused, told["text"]
 

@@ -146,7 +146,7 @@ def test_time_counts_where_a_medium_creeps():
 def test_influences_are_those_of_two_presses():
     """A tenth of the effect of a thousandth, by central differences on the same extruded elements."""
     rows = {row["label"]: row for row in influences.influences(QUICK, lambda _: None)["rows"]}
-    config = influences._quick(design.case_of(QUICK).config)
+    config = influences.quick_press(design.case_of(QUICK).config)
 
     def voltage(factor):
         film = config.segment.film.model_copy(update={"thickness_um": 100.0})

@@ -135,7 +135,7 @@ def array_solids(case: Case, layout: ArrayLayout) -> tuple[Solids, DotShape]:
 
 def draw(text: str) -> dict[str, Any] | None:
     """The parts at rest for the 3D view; None for a design that has none, about which examine says why."""
-    from export.parts_view import parts_view
+    from export.solid_view import parts_view
 
     try:
         return parts_view(*StudioDesign(config_of(text)).solids())

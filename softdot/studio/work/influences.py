@@ -28,7 +28,7 @@ def influences(text: str, tell: Tell) -> dict[str, Any]:
     """
     case, progress = case_of(text), TaskProgress(tell)
     progress.stage("derivatives")
-    config = _quick(case.config)
+    config = quick_press(case.config)
     keys = _keys(config)
     nominal, slopes = KitPress(config).slopes(list(keys))
     if nominal.force == 0.0 or nominal.voltage == 0.0:
@@ -50,13 +50,13 @@ def tolerances_of_making(text: str, tell: Tell) -> dict[str, Any]:
     case, progress = case_of(text), TaskProgress(tell)
     progress.stage("tolerances")
     config = case.config
-    half = config.mesh.scale_sizes(COARSE / 2).model_copy(update={"mesher": _quick(config).mesh.mesher})
+    half = config.mesh.scale_sizes(COARSE / 2).model_copy(update={"mesher": quick_press(config).mesh.mesher})
     budget = plain(tolerance_budget(config.model_copy(update={"mesh": half}), progress.step).as_dict())
     rows = [{**row, "label": f"{row['label']} ±{row['plus_minus']:.3g} {row['unit']}"} for row in budget["rows"]]
     return {"rows": rows, "total": budget["root_sum_square"]}
 
 
-def _quick(config: Config) -> Config:
+def quick_press(config: Config) -> Config:
     """On large elements, extruded where the shape allows it."""
     larger = coarser_press(config, COARSE)
     domed = config.segment.effector is not None and config.segment.effector.shape == "dome"

@@ -1,12 +1,13 @@
 """The press of a design, coarse at once and accurate after that, with how far each can be trusted."""
 
+import math
 import pickle
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from export.viewer_data import viewer_data
+from export.solid_view import press_view
 from foundation.errors import InputError
 from foundation.worker_process import Tell
 from mesh.types import MeshingError
@@ -18,6 +19,7 @@ from softdot.studio.work.design import case_of, config_of, pressed_part
 from softdot.studio.work.remedies import late_remedies
 from softdot.summary import mesh_part, press_part
 from softdot.tolerances.responses import with_larger_elements
+from softdot.tolerances.tolerances import PERMITTIVITY_ROW
 from solve.result import PressResult, Step
 
 COARSE = 3.0
@@ -42,8 +44,23 @@ def accurate_press(text: str, tell: Tell) -> dict[str, Any]:
     if found["numbers"]["solver"]["converged"]:
         tell({"press": found})
         progress.stage("error bars")
-        return {**found, "view": None, "numbers": {**found["numbers"], **plain(case.uncertainty(found["numbers"]))}}
+        errors = with_charge(case.uncertainty(found["numbers"]))
+        return {**found, "view": None, "numbers": {**found["numbers"], **plain(errors)}}
     return found
+
+
+def with_charge(errors: Mapping[str, Any]) -> dict[str, Any]:
+    """The uncertainty of a press with that of its charge, charge_percent, where the voltage has one.
+
+    At open circuit V = Q / C, and C = eps A / t of the undeformed film: each part moves charge and voltage by the same
+    share, but for the permittivity, which moves the voltage alone.
+    """
+    whole, mesh = errors.get("uncertainty", {}), errors.get("discretisation_error", {})
+    if "voltage_percent" not in whole:
+        return dict(errors)
+    shares = [one["voltage_percent"] for one in whole["parts"] if not one["name"].startswith(PERMITTIVITY_ROW)]
+    added = {"uncertainty": {**whole, "charge_percent": math.hypot(*shares)}}
+    return {**errors, **added, "discretisation_error": {**mesh, "charge_percent": mesh["voltage_percent"]}}
 
 
 def press_of_cell(text: str, tell: Tell) -> dict[str, Any]:
@@ -59,7 +76,7 @@ def press_of_cell(text: str, tell: Tell) -> dict[str, Any]:
         "charge_pC": [charge[-1] for charge in pressed.charges_pC.values()],
         "voltage_V": [voltage[-1] for voltage in pressed.signals_V.values()],
         "amplified": press.is_amplified,
-        "warnings": pressed.doubts,
+        "warnings": without_mesh(pressed.doubts),
         "failure": pressed.failure,
     }
     return {"array": plain(numbers), "view": _view(pressed)}
@@ -75,7 +92,7 @@ def _pressed_with_progress(press: PreparedPress, progress: "TaskProgress") -> Pr
 def _view(pressed: Pressed) -> dict[str, Any] | None:
     """For the page; None where no step converged."""
     result = pressed.result
-    return viewer_data(result.tet_mesh, result, pressed.case.dot) if len(result.steps) > 1 else None
+    return press_view(result.tet_mesh, result, pressed.case.dot) if len(result.steps) > 1 else None
 
 
 def _pressed(case: Case, progress: "TaskProgress", quality: str) -> dict[str, Any]:
@@ -83,13 +100,19 @@ def _pressed(case: Case, progress: "TaskProgress", quality: str) -> dict[str, An
     pressed = _pressed_with_progress(case, progress)
     result = pressed.result
     numbers = {"mesh": mesh_part(case.mesh_quality, result.unknowns), **press_part(case.model, result, pressed.course)}
-    numbers |= {"warnings": pressed.doubts, "remedies": late_remedies(case.config, pressed.doubts)}
+    doubts = without_mesh(pressed.doubts) if quality == "coarse" else pressed.doubts
+    numbers |= {"warnings": doubts, "remedies": late_remedies(case.config, doubts)}
     return {
         "quality": quality,
         "numbers": plain(numbers),
         "view": _view(pressed),
         "history": pickle.dumps(without_fields(result)),
     }
+
+
+def without_mesh(doubts: Sequence[str]) -> list[str]:
+    """Warnings of a press on larger elements without those about its elements, which are not the design's."""
+    return [one for one in doubts if "mesh." not in one]
 
 
 def without_fields(result: PressResult) -> PressResult:

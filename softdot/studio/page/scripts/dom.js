@@ -21,7 +21,9 @@ export function short(value) {
 }
 
 export function duration(seconds) {
-  return seconds < 90 ? Math.max(1, Math.round(seconds)) + "\u00a0s" : (seconds / 60).toFixed(1) + "\u00a0min";
+  return seconds < 90
+    ? Math.max(1, Math.round(seconds)) + "\u00a0s"
+    : (seconds / 60).toFixed(1) + "\u00a0min";
 }
 
 // A dotted key, which a narrow column may break between its words.
@@ -35,4 +37,47 @@ export function worded(key, units) {
     if (key.endsWith(ending)) return [key.slice(0, -ending.length).replaceAll("_", " "), unit];
   }
   return [key.replaceAll("_", " "), ""];
+}
+
+// An element of a picture as SVG.
+export function node(tag, attributes, text) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  if (text !== undefined) made.textContent = text;
+  return made;
+}
+
+// Round numbers between two ends, about as many as count.
+export function ticks(low, high, count) {
+  const rough = (high - low) / count,
+    power = 10 ** Math.floor(Math.log10(rough)),
+    found = [];
+  const step = [1, 2, 5, 10].map((factor) => factor * power).find((one) => one >= rough * (1 - 1e-9));
+  for (let at = Math.ceil(low / step - 1e-9) * step; at <= high + 1e-9 * step; at += step) {
+    found.push(Math.abs(at) < 1e-9 * step ? 0 : at);
+  }
+  return found;
+}
+
+// What is made is offered as a file.
+export function download(content, name) {
+  const made = URL.createObjectURL(content);
+  element("a", { href: made, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(made), 1000);
+}
+
+// A toolbar is one stop of the tab key; the arrow keys go along it (ARIA Authoring Practices, toolbar).
+export function roving(toolbar) {
+  const buttons = () => [...toolbar.querySelectorAll("button")].filter((one) => !one.disabled);
+  const settle = (at) => {
+    for (const one of toolbar.querySelectorAll("button")) one.tabIndex = one === at ? 0 : -1;
+  };
+  toolbar.addEventListener("focusin", (event) => settle(event.target));
+  toolbar.addEventListener("keydown", (event) => {
+    const way = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key], all = buttons();
+    if (!way) return;
+    all[(all.indexOf(document.activeElement) + way + all.length) % all.length].focus();
+    event.preventDefault();
+  });
+  settle(buttons()[0]);
 }

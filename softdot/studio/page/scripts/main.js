@@ -1,20 +1,51 @@
 // The tab: its socket to the program, and who shows what the program tells.
 import * as array from "./array.js";
-import { element, find } from "./dom.js";
-import { Form, filter } from "./form.js";
+import { Curves } from "./curves.js";
+import { Designs } from "./designs.js";
+import { duration, element, find, roving } from "./dom.js";
+import { Form } from "./form.js";
+import { filter, hints, tidy } from "./form_search.js";
+import { unpacked } from "./frames.js";
 import * as next from "./next.js";
 import * as recording from "./recording.js";
 import * as result from "./result.js";
+import { StartPage } from "./start.js";
+import { Store } from "./store.js";
+import { Editor, prepareTabs } from "./toml.js";
+import { View } from "./view.js";
 
 const key = new URLSearchParams(location.search).get("key") || "";
-const state = { tab: sessionStorage.getItem("tab") || "", form: null, circuit: null, quality: null, late: [], design: null, socket: null, tries: 0 };
-const address = (path) => `${path}?key=${encodeURIComponent(key)}&tab=${encodeURIComponent(state.tab)}`;
-const viewer = softdotViewer(find("#view3d"));
+const isCopy = sessionStorage.getItem("open") === "yes"; // a copy of a tab has its storage too
+const tab = {
+  name: sessionStorage.getItem("tab") || "",
+  form: null,
+  circuit: null,
+  isBuilt: false,
+  shown: null,
+  painted: {},
+  tries: 0,
+};
+const store = new Store(sessionStorage);
+const viewer = new View(find("#view3d"));
+const curves = new Curves(find("#curves"), (text) => { find("#heard").textContent = text; });
+const designs = new Designs(ask, (list, runs) => curves.show(list, runs));
+const editor = new Editor(find("#text"), find("#toml .lines"));
+const start = new StartPage(find("#start"), ask);
 const tasks = new next.Tasks(ask, address);
+const RESULTS = { influences: "Each number 10 % larger", tolerances: "Each number at the end of its tolerance" };
+const MARKED = { numbers: "#numbers", curves: "#curves", circuit: "#circuit .answer", array: "#array figure" };
+
+// Files have addresses of their own, which hold no key; a report is shown in a frame that leads nowhere else.
+function address(path) {
+  if (path.startsWith("/files/")) return path.endsWith(".html") ? path.replace("/files/", "/show/") : path;
+  return `${path}?key=${encodeURIComponent(key)}&tab=${encodeURIComponent(tab.name)}`;
+}
 
 function ask(message) {
-  if (state.socket && state.socket.readyState === WebSocket.OPEN) state.socket.send(JSON.stringify(message));
-  else say("The program does not answer: is softdot studio still running? The design is kept.", true);
+  if (store.ask(message)) return;
+  const isKept = store.unsent.some((one) => one.n === store.number);
+  const more = isKept ? "This change is kept in the page and sent when it does." : "This was not done.";
+  if (store.link !== "open") say(`softdot studio does not answer. ${more}`, true);
 }
 
 function say(text, bad = false) {
@@ -24,184 +55,340 @@ function say(text, bad = false) {
   place.firstElementChild.textContent = text;
 }
 
-function shown(view, words) {
-  viewer.show(view);
+// Whether something is painted for the first time as it is now.
+function isNew(name, now) {
+  const before = tab.painted[name];
+  tab.painted[name] = now;
+  return before !== now;
+}
+
+function paintBody() {
+  const { state } = store,
+    body = store.bodyToShow(tab.shown);
+  if (!body || !body.view) return;
+  if (isNew("body", body)) {
+    viewer.show(body.view);
+  }
+  tab.shown = body;
+  const isPress = body.tell === "view",
+    current = store.isCurrent(body.tell);
+  let words = isPress
+    ? `The ${body.quality === "array" ? "coarse" : body.quality} press. Move the step, or play it.`
+    : "The parts at rest, as they would be made; the press follows when your hand rests.";
+  if (!current) words = state.design.mistakes.length ? "The last design without a mistake." : store.before(body.tell);
   find("#view3d .shown").textContent = words;
-  find("#view3d .play").disabled = view.steps.length < 2;
+  find("#view3d canvas").classList.toggle("stale", !current);
 }
 
-// Where there is nothing to press, why: it counts more than that the press before was cancelled.
-function nothingToPress() {
-  const { mistakes = [], array: cells, press_hash: hash } = state.design || {};
-  if (mistakes.length) result.doing("The design has a mistake; mend it and it is pressed.", false, true);
-  else if (state.ofArray && cells && !hash) result.doing("Raise a dot of the cell to press it.", false);
-  else return;
-  find("#press .again").hidden = true;
-  if (mistakes.length && find("#view3d .step-text").textContent) find("#view3d .shown").textContent = "The last design without a mistake.";
+function paintPress({ said, bad, busy, again, progress }) {
+  result.doing(said, busy, bad);
+  const bar = find("#press progress");
+  find("#press .again").hidden = !again;
+  bar.hidden = !busy;
+  if (progress && progress.count) bar.value = progress.done / progress.count;
+  else bar.removeAttribute("value");
 }
 
-// Whether the numbers are those of another design than the one in the form.
-function stale() {
-  const old = Boolean(state.shownHash) && !state.ofArray && state.design && state.design.press_hash !== state.shownHash;
-  find("#before").hidden = !old;
-  for (const place of ["#numbers", "#curves"]) find(place).classList.toggle("stale", old);
+function paintForm({ design }) {
+  if (!store.form || !design.values) return;
+  if (!tab.form) {
+    tab.form = new Form(store.form, ask);
+    tab.circuit = new Form(store.form, ask);
+  }
+  tab.form.update(design.values, design.stated, design.mistakes, design.remedies);
+  tab.circuit.update(design.values, design.stated, design.mistakes, design.remedies);
+  if (tab.isBuilt) return tidy(find("#form"));
+  tab.isBuilt = true;
+  find("#form").replaceChildren(...tab.form.whole());
+  filter(find("#form"), find("#find").value); // typed before there was a form
+  find("#circuit .fields").replaceChildren(tab.circuit.table(store.form.schema.properties.readout, ["readout"]));
+  find("#circuit .fields details").open = true;
+  return hints(find("#form"), find("#hint"));
 }
 
-const hear = {
-  tab({ name }) {
-    state.tab = name;
-    sessionStorage.setItem("tab", name);
-  },
-  form(about) {
-    state.form = new Form(about, ask);
-    state.circuit = new Form(about, ask);
-    find("#plate select").replaceChildren(...about.standards.map((one) => element("option", { value: one.name }, one.name)));
-    find("#plate select").value = "marburg-medium";
-  },
-  document(told) {
-    const text = find("#text");
-    if (document.activeElement !== text || !text.dataset.dirty) text.value = told.text;
-    state.text = told.text;
-    tasks.follow(told.text);
-    for (const name of ["undo", "redo", "reset"]) find(`#${name}`).disabled = !told[name];
-  },
-  parts({ view }) {
-    shown(view, "The parts at rest, as they would be made; the press follows when your hand rests.");
-  },
-  state(told) {
-    state.design = told;
-    if (told.values) {
-      const first = !state.built;
-      state.built = true;
-      state.form.update(told.values, told.stated, told.mistakes);
-      state.circuit.update(told.values, told.stated, told.mistakes);
-      if (first) {
-        find("#form").replaceChildren(...state.form.whole());
-        filter(find("#form"), find("#find").value); // typed before there was a form
-        find("#circuit .fields").replaceChildren(state.circuit.table(state.form.about.schema.properties.readout, ["readout"]));
-        find("#circuit .fields details").open = true;
-      }
+function paintDesign({ design }) {
+  const text = find("#text");
+  if (document.activeElement !== text || !text.dataset.dirty) text.value = design.text;
+  if (isNew("lines", design.text + JSON.stringify(design.mistakes))) editor.mark(design.mistakes);
+  for (const name of ["undo", "redo", "reset"]) find(`#${name}`).disabled = !design[name];
+  const isChecked = design.is_checked || !tab.isBuilt; // before, its form is as the hand has left it
+  if (!isChecked || !isNew("check", `${design.of} ${design.is_checked} ${JSON.stringify(late())}`)) return;
+  paintForm(store.state);
+  array.state(design);
+  next.mistakes(design, ask);
+  next.warnings(design.mistakes.length ? { warnings: [], remedies: [] } : design, late(), ask);
+  next.cost(design);
+  const standard = design.values && design.values.dot.standard,
+    choice = find("#plate select");
+  if (standard && isNew("standard", standard) && choice.options.length) choice.value = standard; // that of the dot
+}
+
+// Warnings that only a press tells, of this design.
+function late() {
+  const { curves: pressed, array: cells } = store.contents;
+  if (store.isCurrent("array") && cells) return cells.pressed.warnings.map((text) => ({ text, remedy: null }));
+  if (!store.isCurrent("numbers") || !pressed) return [];
+  const { warnings = [], remedies = [] } = pressed.curves[pressed.curves.length - 1].numbers;
+  return warnings.map((text, i) => ({ text, remedy: remedies[i] }));
+}
+
+function paintContents() {
+  const { curves: pressed, circuit, array: cells, kept, recording: read, verdict } = store.contents;
+  const now = pressed && pressed.curves[pressed.curves.length - 1], { estimate } = store.state;
+  if (isNew("curves", pressed) && now) designs.present(now);
+  const numbers = now && JSON.stringify([estimate, pressed.revision, now.quality, now.numbers]);
+  if (isNew("numbers", numbers) && now) result.show(now, estimate);
+  if (isNew("circuit", circuit) && circuit) result.circuit(circuit.found);
+  if (isNew("array", cells) && cells) array.show(cells.pressed);
+  if (isNew("kept", kept) && kept) designs.hear(kept);
+  for (const [name, title] of Object.entries(RESULTS)) {
+    const found = store.contents[name];
+    if (isNew(name, found) && found) {
+      next.influences(found.result, title);
+      tab.influences = name;
     }
-    state.ofArray = array.state(told);
-    nothingToPress();
-    stale();
-    next.mistakes(told, ask);
-    next.warnings(told.mistakes.length ? { warnings: [], remedies: [] } : told, state.late, ask);
-    next.cost(told);
-  },
-  curves({ curves }) {
-    const now = curves[curves.length - 1];
-    state.quality = now.quality;
-    state.late = (now.numbers.warnings || []).map((text, i) => ({ text, remedy: (now.numbers.remedies || [])[i] }));
-    result.show(curves);
-    state.shownHash = now.press_hash;
-    stale();
-    if (state.design) next.warnings(state.design, state.late, ask);
-  },
-  array({ pressed }) {
-    state.quality = "coarse";
-    state.late = pressed.warnings.map((text) => ({ text, remedy: null }));
-    array.show(pressed);
-    if (state.design) next.warnings(state.design, state.late, ask);
-  },
-  pressed({ view }) {
-    shown(view, `The ${state.quality} press. Move the step, or play it.`);
-  },
-  circuit({ found }) {
-    result.circuit(found);
-  },
-  progress(told) {
-    if (told.task === "press") result.progress(told);
-    else tasks.progress(told);
-  },
-  ended(told) {
-    if (told.task !== "press") return tasks.ended(told);
-    result.ended(told, state);
-    return nothingToPress();
-  },
-  done(told) {
-    tasks.done(told);
-    if (told.task === "influences") next.influences(told.result, "Each number 10 % larger");
-    if (told.task === "tolerances") next.influences(told.result, "Each number at the end of its tolerance");
-    if (told.task === "recording") recording.show(told.result, ask, state.form.about.units);
-    if (told.task === "diagnosis") recording.verdict(told.result, ask, address);
-  },
-  kept(told) {
-    next.kept(told, ask);
-  },
-  earlier({ designs }) {
-    const time = (one) => new Date(1000 * one.saved_s).toLocaleString();
-    find(".earlier").hidden = !designs.length;
-    find("#earlier").replaceChildren(element("option", { value: "" }, "choose…"), ...designs.map((one) => element("option", { value: one.name }, `${time(one)}: ${one.lines}`)));
-  },
-  said({ text, bad }) {
-    say(text, bad);
-  },
-};
+  }
+  if (isNew("recording", read)) {
+    designs.record(read && read.result.of !== "a coupon" ? read.result.runs : []); // a strip is not pressed
+    if (read && store.form) recording.show(read.result, ask, store.form.units);
+    else find("#recording").replaceChildren();
+    tab.painted.verdict = undefined;
+  }
+  if (isNew("verdict", verdict) && verdict) recording.verdict(verdict.result, ask, address);
+}
 
-function connect() {
-  const socket = new WebSocket(`ws://${location.host}${address("/socket")}`);
-  state.socket = socket;
-  socket.addEventListener("open", () => { state.tries = 0; find("#link").textContent = "on this machine only; every change is kept"; });
+// Long work: each as far as the program says it is.
+function paintTasks({ tasks: known, artefacts }) {
+  for (const [task, { is, progress, said, took_s: took }] of Object.entries(known)) {
+    const name = task === "diagnosis" ? "verdict" : task,
+      made = store.contents[name];
+    if (isNew(`result of ${task}`, made) && made) tasks.done({ task, result: made.result });
+    if (isNew(`state of ${task}`, JSON.stringify(known[task]))) {
+      if (is === "running") tasks.progress({ task, ...progress });
+      else tasks.ended({ task, said: is === "done" ? `done in ${duration(took)}` : said, bad: is === "failed" });
+    }
+    tasks.item(task).querySelector(".old").hidden = !artefacts[name] || artefacts[name].current;
+  }
+}
+
+// What belongs to another design is marked, and one click makes it anew.
+function paintMarks({ artefacts }) {
+  const isOld = (name) => Boolean(artefacts[name] && !artefacts[name].current);
+  find("#before").hidden = !isOld("numbers");
+  const other = `a design before: ${artefacts.numbers ? artefacts.numbers.what : ""}`;
+  const whose = `those of ${store.state.design.mistakes.length ? "the last design without a mistake" : other}.`;
+  find("#before").textContent = store.state.estimate
+    ? `Force, charge and voltage are estimated; curves and other numbers are ${whose}`
+    : `The numbers and curves are still ${whose}`;
+  for (const [name, place] of Object.entries(MARKED)) find(place).classList.toggle("stale", isOld(name));
+  const name = tab.influences,
+    place = find("#influences"),
+    old = name && isOld(name);
+  place.classList.toggle("stale", Boolean(old));
+  if (!isNew("mark of influences", old ? store.before(name) : "") && place.querySelector(".before")) return;
+  for (const mark of place.querySelectorAll(".before")) mark.remove();
+  if (old)
+    place.prepend(
+      element(
+        "p",
+        { class: "before" },
+        `${store.before(name)} `,
+        element("button", { type: "button", onclick: () => ask({ do: "start", task: name }) }, "Make it anew"),
+      ),
+    );
+}
+
+function paintLink() {
+  const { state, link } = store;
+  const kept = store.unsent.length
+    ? "your last change is kept in this page and is sent when it answers"
+    : "nothing can be changed until it does";
+  const words = {
+    starting: "starting…",
+    open: state && state.saved !== true ? state.saved : "on this machine only; every change is saved",
+    lost: `softdot studio does not answer; ${kept}`,
+    ended: `softdot studio has ended; ${kept}. Start it again, and this page goes on.`,
+    elsewhere: "this design is open in another tab, where it goes on",
+  };
+  find("#link").textContent = words[link] + (link === "open" && state && state.machine ? ` – ${state.machine}` : "");
+  find("#link").classList.toggle(
+    "bad",
+    (link !== "open" && link !== "starting") || Boolean(state && state.saved !== true),
+  );
+  find("#design").inert = ["lost", "ended", "elsewhere"].includes(link);
+}
+
+function paint() {
+  paintLink();
+  if (!store.state) return;
+  paintDesign(store.state);
+  paintContents();
+  paintTasks(store.state);
+  paintBody();
+  paintPress(store.state);
+  paintMarks(store.state);
+  start.meets(store.state.design);
+}
+
+function hear(told) {
+  store.hear(told);
+  if (told.tell === "tab") {
+    tab.name = told.name;
+    sessionStorage.setItem("tab", told.name);
+  } else if (told.tell === "elsewhere") store.link = "elsewhere";
+  else if (told.tell === "said") say(told.text, told.bad);
+  else if (told.tell === "form") {
+    find("#plate select").replaceChildren(
+      ...told.standards.map((one) => element("option", { value: one.name }, one.name)),
+    );
+    tab.painted.check = undefined;
+    start.hearForm(told);
+  } else if (told.tell === "earlier") start.hearEarlier(told.designs);
+  if (["state", "form", "elsewhere"].includes(told.tell)) paint();
+}
+
+// The address of the socket. Where this tab comes back, another program may listen on the port by now: the program
+// shows that it holds the key, and so does the tab, and neither sends it. A page that is not local has no way to do so.
+async function socketAddress() {
+  const own = address("/socket") + (isCopy && !tab.hasOpened ? "&copy=1" : "");
+  if (!tab.hasOpened || !window.crypto.subtle) return own;
+  const bytes = (text) => new TextEncoder().encode(text),
+    hex = (found) => [...new Uint8Array(found)].map((one) => one.toString(16).padStart(2, "0")).join("");
+  const secret = await crypto.subtle.importKey("raw", bytes(key), { name: "HMAC", hash: "SHA-256" }, false, ["sign"]);
+  const proof = async (text) => hex(await crypto.subtle.sign("HMAC", secret, bytes(text)));
+  const nonce = hex(crypto.getRandomValues(new Uint8Array(16)));
+  const greeting = await (await fetch(`/greeting?nonce=${nonce}`)).json();
+  if (greeting.proof !== (await proof(`studio:${nonce}`))) throw new Error("another program answers");
+  const answer = await proof(`tab:${greeting.question}`);
+  return `/socket?tab=${encodeURIComponent(tab.name)}&question=${greeting.question}&proof=${answer}`;
+}
+
+function lost() {
+  if (store.link === "elsewhere") return;
+  tab.tries += 1;
+  store.closed(tab.tries >= 30);
+  paintLink();
+  setTimeout(connect, Math.min(500 * tab.tries, 5000));
+}
+
+async function connect() {
+  let socket;
+  try {
+    socket = new WebSocket(`ws://${location.host}${await socketAddress()}`);
+  } catch {
+    lost();
+    return;
+  }
+  socket.binaryType = "arraybuffer";
+  socket.addEventListener("open", () => {
+    Object.assign(tab, { tries: 0, hasOpened: true });
+    sessionStorage.setItem("open", "yes");
+    store.opened((text) => socket.send(text));
+    paintLink();
+  });
   socket.addEventListener("message", (event) => {
-    const told = JSON.parse(event.data);
-    hear[told.tell](told);
+    const told = unpacked(event.data);
+    hear(told);
     document.dispatchEvent(new CustomEvent("softdot", { detail: told.tell }));
   });
-  socket.addEventListener("close", () => {
-    find("#link").textContent = "no answer; trying again…";
-    state.tries += 1;
-    if (state.tries < 30) setTimeout(connect, Math.min(500 * state.tries, 5000));
-    else find("#link").textContent = "softdot studio has ended; the design is kept";
-  });
+  socket.addEventListener("close", lost);
 }
+
+window.addEventListener("pagehide", () => sessionStorage.removeItem("open"));
 
 function typing() {
   const text = find("#text");
   let later = null;
-  const send = () => { delete text.dataset.dirty; if (text.value !== state.text) ask({ do: "text", text: text.value }); };
-  text.addEventListener("input", () => { text.dataset.dirty = "yes"; clearTimeout(later); later = setTimeout(send, 500); });
+  const send = () => {
+    delete text.dataset.dirty;
+    if (store.state && text.value !== store.state.design.text) ask({ do: "text", text: text.value });
+  };
+  text.addEventListener("input", () => {
+    text.dataset.dirty = "yes";
+    clearTimeout(later);
+    later = setTimeout(send, 500);
+  });
   text.addEventListener("change", send);
 }
 
 function files() {
   const input = find("#import-file");
   const open = async (file) => {
-    if (file.size > 200000) return say(`'${file.name}' has ${(file.size / 1e6).toFixed(1)} MB: a design is a small TOML file.`, true);
+    if (file.size > 200000)
+      return say(`'${file.name}' has ${(file.size / 1e6).toFixed(1)} MB: a design is a small TOML file.`, true);
     return ask({ do: "text", text: await file.text() });
   };
   find("#import").addEventListener("click", () => input.click());
-  input.addEventListener("change", () => { if (input.files[0]) open(input.files[0]); input.value = ""; });
+  input.addEventListener("change", () => {
+    if (input.files[0]) open(input.files[0]);
+    input.value = "";
+  });
   find("#export").addEventListener("click", () => {
-    const made = URL.createObjectURL(new Blob([state.text], { type: "application/toml" }));
+    const made = URL.createObjectURL(
+      new Blob([store.state ? store.state.design.text : ""], { type: "application/toml" }),
+    );
     element("a", { href: made, download: "design.toml" }).click();
     setTimeout(() => URL.revokeObjectURL(made), 1000);
   });
   const design = find("#design");
   design.addEventListener("dragover", (event) => event.preventDefault());
-  design.addEventListener("drop", (event) => { event.preventDefault(); if (event.dataTransfer.files[0]) open(event.dataTransfer.files[0]); });
+  design.addEventListener("drop", (event) => {
+    event.preventDefault();
+    if (event.dataTransfer.files[0]) open(event.dataTransfer.files[0]);
+  });
 }
 
 function buttons() {
   for (const name of ["undo", "redo", "reset"]) find(`#${name}`).addEventListener("click", () => ask({ do: name }));
+  // What is being typed has an undo of its own; once it is sent, undo is that of the design.
+  const typed = new WeakSet();
+  document.addEventListener("input", (event) => typed.add(event.target), true);
+  document.addEventListener("change", (event) => typed.delete(event.target), true);
   document.addEventListener("keydown", (event) => {
-    if (!(event.ctrlKey || event.metaKey) || event.target.matches("textarea, input[type=text], input[type=search], input[type=number]")) return;
-    const name = event.key === "z" ? (event.shiftKey ? "redo" : "undo") : event.key === "y" ? "redo" : null;
-    if (name) { event.preventDefault(); ask({ do: name }); }
+    if (!(event.ctrlKey || event.metaKey) || typed.has(event.target) || event.target.matches("textarea")) return;
+    const name =
+      event.key.toLowerCase() === "z" ? (event.shiftKey ? "redo" : "undo") : event.key === "y" ? "redo" : null;
+    if (name) {
+      event.preventDefault();
+      ask({ do: name });
+    }
   });
   find("#press .cancel").addEventListener("click", () => ask({ do: "cancel", task: "press" }));
-  find("#press .again").addEventListener("click", () => { find("#press .again").hidden = true; ask({ do: "press" }); });
-  for (const one of document.querySelectorAll("[data-start]")) one.addEventListener("click", () => ask({ do: "start", task: one.dataset.start }));
-  find("#plate button").addEventListener("click", () => ask({ do: "start", task: "plate", kind: "text", text: find("#plate input").value, standard: find("#plate select").value }));
-  find("#keep").addEventListener("submit", (event) => { event.preventDefault(); ask({ do: "keep", name: find("#keep input").value }); find("#keep input").value = ""; });
-  find("#earlier").addEventListener("change", (event) => { if (event.target.value) ask({ do: "restore", name: event.target.value }); event.target.value = ""; });
-  find("#said button").addEventListener("click", () => { find("#said").hidden = true; });
+  find("#press .again").addEventListener("click", () => {
+    ask({ do: "press" });
+  });
+  for (const one of document.querySelectorAll("[data-start]"))
+    one.addEventListener("click", () => ask({ do: "start", task: one.dataset.start }));
+  find("#plate button").addEventListener("click", () =>
+    ask({
+      do: "start",
+      task: "plate",
+      kind: "text",
+      text: find("#plate input").value,
+      standard: find("#plate select").value,
+    }),
+  );
+  find("#keep").addEventListener("submit", (event) => {
+    event.preventDefault();
+    ask({ do: "keep", name: find("#keep input").value });
+    find("#keep input").value = "";
+  });
+  find("#every").addEventListener("change", (event) => {
+    find("#form").classList.toggle("every", event.target.checked);
+    tidy(find("#form"));
+  });
+  find("#begin").addEventListener("click", () => start.open());
+  find("#said button").addEventListener("click", () => {
+    find("#said").hidden = true;
+  });
   find("#find").addEventListener("input", (event) => filter(find("#form"), event.target.value));
   find("#form").addEventListener("submit", (event) => event.preventDefault());
 }
 
 window.addEventListener("dragover", (event) => event.preventDefault());
 window.addEventListener("drop", (event) => event.preventDefault());
+prepareTabs();
+roving(find("header .tools"));
 typing();
 files();
 buttons();

@@ -1,14 +1,28 @@
 // The right side: warnings, what moves the voltage, work for the bench, comparison.
 import { tornado } from "./charts.js";
-import { breakable, duration, element, find, short } from "./dom.js";
-import { go, named } from "./form.js";
+import { duration, element, find } from "./dom.js";
+import { go, named } from "./form_search.js";
 
-export const TITLES = { kit: "Kit", report: "Report and CAD", plate: "Braille plate", influences: "What moves the voltage", tolerances: "Tolerances", recording: "Recording", diagnosis: "Diagnosis" };
+export const TITLES = {
+  kit: "Kit",
+  report: "Report and CAD",
+  plate: "Braille plate",
+  influences: "What moves the voltage",
+  tolerances: "Tolerances",
+  recording: "Recording",
+  diagnosis: "Diagnosis",
+};
 
-const OF_DESIGN = ["kit", "report", "influences", "tolerances"];
+const OF_RECORDING = ["recording", "diagnosis"];
 
 function mending(sentence, remedy, ask) {
-  const button = remedy && element("button", { type: "button", onclick: () => ask({ do: "change", changes: remedy.changes }) }, `Mend it: ${remedy.says}`);
+  const button =
+    remedy &&
+    element(
+      "button",
+      { type: "button", onclick: () => ask({ do: "change", changes: remedy.changes }) },
+      `Mend it: ${remedy.says}`,
+    );
   const field = named(find("#form"), sentence);
   const there = field && element("button", { type: "button", onclick: () => go(field) }, "Show the number");
   return element("li", {}, sentence, element("span", { class: "row" }, button, there));
@@ -20,23 +34,50 @@ export function mistakes(state, ask) {
 
 export function warnings(state, late, ask) {
   const items = state.warnings.map((one, i) => mending(one, state.remedies[i], ask));
-  for (const one of late) if (!state.warnings.includes(one.text)) items.push(mending(one.text, one.remedy, ask));
+  for (const one of late)
+    if (!state.warnings.includes(one.text)) items.push(mending(one.text, one.remedy, ask));
   find("#warnings").replaceChildren(...(items.length ? items : [element("li", { class: "soft" }, "None.")]));
 }
 
 export function cost(state) {
   const found = state.cost;
-  find("#cost").textContent = found ? `The report presses about ${found.tetrahedra.toLocaleString("en")} elements, in about ${duration(found.time_s)} and ${found.memory_GB} GB.` : "";
+  find("#cost").textContent = found
+    ? `The report presses about ${found.tetrahedra.toLocaleString("en")} elements, ` +
+      `in about ${duration(found.time_s)} and ${found.memory_GB} GB.`
+    : "";
 }
 
 export function influences(result, title) {
   const rows = result.rows.slice(0, 14).map((row) => ({ label: row.label, value: row.voltage_percent }));
-  const body = result.rows.map((row) => element("tr", {}, element("th", { scope: "row" }, row.label), element("td", {}, `${row.voltage_percent.toFixed(1)} %`), element("td", {}, `${row.force_percent.toFixed(1)} %`)));
-  const head = element("thead", {}, element("tr", {}, element("th", { scope: "col" }, title), element("th", { scope: "col" }, "voltage"), element("th", { scope: "col" }, "force")));
+  const body = result.rows.map((row) =>
+    element(
+      "tr",
+      {},
+      element("th", { scope: "row" }, row.label),
+      element("td", {}, `${row.voltage_percent.toFixed(1)} %`),
+      element("td", {}, `${row.force_percent.toFixed(1)} %`),
+    ),
+  );
+  const head = element(
+    "thead",
+    {},
+    element(
+      "tr",
+      {},
+      element("th", { scope: "col" }, title),
+      element("th", { scope: "col" }, "voltage"),
+      element("th", { scope: "col" }, "force"),
+    ),
+  );
   find("#influences").replaceChildren(
     element("p", { class: "soft" }, `Change of the voltage, to first order, on a coarse mesh. ${title}.`),
     tornado(rows),
-    element("details", {}, element("summary", {}, "As a table"), element("table", {}, head, element("tbody", {}, ...body))),
+    element(
+      "details",
+      {},
+      element("summary", {}, "As a table"),
+      element("table", {}, head, element("tbody", {}, ...body)),
+    ),
   );
 }
 
@@ -50,29 +91,29 @@ export class Tasks {
 
   item(task) {
     if (!this.items[task]) {
-      this.items[task] = element("li", {}, element("strong", {}, TITLES[task] || task), element("p", { class: "state" }), element("p", { class: "old", hidden: true }, "The design has been changed since."), element("progress", { max: 1, "aria-label": `Progress: ${TITLES[task]}` }), element("p", { class: "links" }), element("div", { class: "more" }), element("button", { type: "button", onclick: () => this.ask({ do: "cancel", task }) }, "Cancel"));
-      find("#tasks").prepend(this.items[task]);
+      this.items[task] = element(
+        "li",
+        {},
+        element("strong", {}, TITLES[task] || task),
+        element("p", { class: "state" }),
+        element("p", { class: "old", hidden: true }, "The design has been changed since."),
+        element("progress", { max: 1, "aria-label": `Progress: ${TITLES[task]}` }),
+        element("p", { class: "links" }),
+        element("div", { class: "more" }),
+        element("button", { type: "button", onclick: () => this.ask({ do: "cancel", task }) }, "Cancel"),
+      );
+      find(OF_RECORDING.includes(task) ? "#drop-tasks" : "#tasks").prepend(this.items[task]);
     }
     return this.items[task];
   }
 
-  // text: of the present design; what was made of another one says so.
-  follow(text) {
-    this.text = text;
-    for (const [task, item] of Object.entries(this.items)) {
-      item.querySelector(".old").hidden = !OF_DESIGN.includes(task) || item.madeOf === undefined || item.madeOf === text;
-    }
-  }
-
   progress(told) {
-    const item = this.item(told.task), bar = item.querySelector("progress");
+    const item = this.item(told.task),
+      bar = item.querySelector("progress");
     item.classList.remove("bad");
-    if (told.stage === "start") {
-      item.madeOf = this.text;
-      item.querySelector(".old").hidden = true;
-    }
     const left = told.left_s && told.count ? `, ${duration(told.left_s)} left` : "";
-    item.querySelector(".state").textContent = `${told.stage}${told.count ? ` ${told.done} of ${told.count}` : ""}${told.text ? `: ${told.text}` : ""}${left}`;
+    item.querySelector(".state").textContent =
+      `${told.stage}${told.count ? ` ${told.done} of ${told.count}` : ""}${told.text ? `: ${told.text}` : ""}${left}`;
     item.querySelector("button").hidden = false;
     bar.hidden = false;
     if (told.count) bar.value = told.done / told.count;
@@ -80,12 +121,20 @@ export class Tasks {
   }
 
   done(told) {
-    const item = this.item(told.task), { result } = told, links = [];
-    const link = (token, text, extra) => element("a", { href: this.address(`/files/${token}`), ...extra }, text);
-    if (result.page && result.file) links.push(link(result.page, "Open the page", { target: "_blank", rel: "noopener noreferrer" }));
-    if (result.file) links.push(link(result.file, `Download ${result.file.split("/").pop()}`, { download: true }));
+    const item = this.item(told.task),
+      { result } = told,
+      links = [];
+    const link = (token, text, extra) =>
+      element("a", { href: this.address(`/files/${token}`), ...extra }, text);
+    if (result.page && result.file)
+      links.push(link(result.page, "Open the page", { target: "_blank", rel: "noopener noreferrer" }));
+    if (result.file)
+      links.push(link(result.file, `Download ${result.file.split("/").pop()}`, { download: true }));
     item.querySelector(".links").replaceChildren(...links);
-    const said = [...(result.said || []), ...(told.task === "recording" ? [] : result.warnings || []).map((one) => `warning: ${one}`)];
+    const said = [
+      ...(result.said || []),
+      ...(told.task === "recording" ? [] : result.warnings || []).map((one) => `warning: ${one}`),
+    ];
     item.querySelector(".more").replaceChildren(...said.map((one) => element("p", {}, one)));
     if (told.took_s !== undefined) this.finish(item, `done in ${duration(told.took_s)}`);
   }
@@ -103,16 +152,4 @@ export class Tasks {
     item.querySelector("progress").hidden = true;
     item.querySelector("button").hidden = true;
   }
-}
-
-export function kept(told, ask) {
-  const place = find("#compare");
-  if (!told.names.length) {
-    place.replaceChildren(element("p", { class: "soft" }, `Keep up to ${told.most} designs to see them side by side.`));
-    return;
-  }
-  const buttons = (i) => element("span", { class: "pair" }, element("button", { type: "button", onclick: () => ask({ do: "take", number: i }), "aria-label": `Go on with ${told.names[i]}` }, "Use"), element("button", { type: "button", onclick: () => ask({ do: "drop", number: i }), "aria-label": `Take out ${told.names[i]}` }, "×"));
-  const head = element("tr", {}, element("td", {}), ...told.names.map((name, i) => element("th", { scope: "col" }, name, buttons(i))));
-  const rows = told.rows.map((row) => element("tr", {}, element("th", { scope: "row" }, ...breakable(row.label + (row.unit ? ` (${row.unit})` : ""))), ...row.cells.map((cell) => element("td", {}, short(cell)))));
-  place.replaceChildren(element("div", { class: "wide", tabindex: 0, role: "region", "aria-label": "Compared designs" }, element("table", {}, element("thead", {}, head), element("tbody", {}, ...rows))));
 }
