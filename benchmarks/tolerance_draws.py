@@ -15,7 +15,7 @@ from softdot.config.loading import load_config
 from softdot.differentiation import value_of, with_changes
 from softdot.executors import executor_for
 from softdot.tolerances.budget import tolerance_budget
-from softdot.tolerances.draws import SHARES, Box
+from softdot.tolerances.draws import SHARES, ToleranceBox
 from softdot.tolerances.factors import with_factors
 from softdot.tolerances.questions import Question, answer_all
 from softdot.tolerances.responses import coarser_press
@@ -35,7 +35,7 @@ def main(config_path: Path, count: int) -> None:
     config = load_config(config_path)
     own = coarser_press(config, 1.0)
     factored = with_factors(own)
-    box = Box.of(tolerances(config), lambda key: value_of(factored, key))
+    box = ToleranceBox.of(tolerances(config), lambda key: value_of(factored, key))
     places = np.random.default_rng(SEED).uniform(-1.0, 1.0, (count, len(box.rows)))
     asked = {str(n): Question(own, (), with_changes(factored, box.changes(place))) for n, place in enumerate(places)}
     with executor_for() as executor:

@@ -8,7 +8,7 @@ from typing import Any
 from foundation.executor import HERE, Executor
 from softdot.config.schema import Config
 from softdot.differentiation import value_of
-from softdot.tolerances.draws import Box, Linear, box_questions, drawn
+from softdot.tolerances.draws import LinearResponse, ToleranceBox, box_questions, drawn
 from softdot.tolerances.factors import with_factors
 from softdot.tolerances.questions import Question, answer_all
 from softdot.tolerances.responses import Response, coarser_press
@@ -80,7 +80,7 @@ def tolerance_budget(
         for way, end in zip(END_NAMES, both, strict=True)
     }
     factored = with_factors(coarse)
-    box = Box.of(rows, lambda key: value_of(factored, key))
+    box = ToleranceBox.of(rows, lambda key: value_of(factored, key))
     together = box_questions(coarse, box, keys)
     found = answer_all(
         {NOMINAL_QUESTION: Question(fine, keys), **ends, CHECK_QUESTION: Question(coarse, keys), **together},
@@ -93,9 +93,9 @@ def tolerance_budget(
         _effect_by_ends(row, nominal, *(found[f"{row.label}, {way}"] for way in END_NAMES)) for row, *_ in moved
     ]
     effects.sort(key=lambda effect: -abs(effect.change.voltage))
-    known = [Linear(*found[name]) for name in (CHECK_QUESTION, *together)]
+    known = [LinearResponse(*found[name]) for name in (CHECK_QUESTION, *together)]
     both = [(found[f"{row.label}, {END_NAMES[0]}"], found[f"{row.label}, {END_NAMES[1]}"]) for row, *_ in moved]
-    off_at_once = drawn(box, Linear(nominal, by_key), known, both) if together else None
+    off_at_once = drawn(box, LinearResponse(nominal, by_key), known, both) if together else None
     return Budget(
         nominal, _difference(check, nominal), _root_sum_square(effects), tuple(effects),
         (fine.mesh.element_size_mm, fine.mesh.contact_element_size_mm), off_at_once,

@@ -29,7 +29,7 @@ SHARES = (0.05, 0.5, 0.95)
 """Shares of the draws that lie below what is told."""
 
 
-class Linear(NamedTuple):
+class LinearResponse(NamedTuple):
     """A response and its derivatives by key."""
 
     nominal: Response
@@ -37,7 +37,7 @@ class Linear(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Box:
+class ToleranceBox:
     """Quantities that are off: rows with slopes, each from -1 to 1 times its plus or minus. places (n, r), 0 first.
 
     relative (r,) : relative change of the key that a row changes most, at its upper end.
@@ -48,7 +48,7 @@ class Box:
     relative: Floats
 
     @classmethod
-    def of(cls, rows: Sequence[Tolerance], value: Callable[[str], float]) -> "Box":
+    def of(cls, rows: Sequence[Tolerance], value: Callable[[str], float]) -> "ToleranceBox":
         """The box of the rows that count, with its places of the presses: a Latin hypercube. value : of a key."""
         counted = tuple(row for row in rows if row.counted)
         random = np.random.default_rng(SEED)
@@ -69,7 +69,7 @@ class Box:
                 found[key] = found.get(key, 0.0) + float(at) * row.plus_minus * slope
         return found
 
-    def along(self, found: Linear) -> tuple[Floats, Floats]:
+    def along(self, found: LinearResponse) -> tuple[Floats, Floats]:
         """Logarithms (2,) of force and voltage, and their slopes (r, 2) along the rows, over plus or minus."""
         size = np.abs(np.array(found.nominal))
         rows = [
@@ -82,7 +82,7 @@ class Box:
         return np.log(size), np.array(rows) / (size * np.sign(found.nominal))
 
 
-def box_questions(config: Config, box: Box, keys: tuple[str, ...]) -> dict[str, Question]:
+def box_questions(config: Config, box: ToleranceBox, keys: tuple[str, ...]) -> dict[str, Question]:
     """The presses at all places but the nominal one, by their names; none where the path of the press matters.
 
     config : on the mesh of these presses. InputError for a place that cannot be built.
@@ -97,7 +97,11 @@ def box_questions(config: Config, box: Box, keys: tuple[str, ...]) -> dict[str, 
 
 
 def drawn(
-    box: Box, finer: Linear, coarser: Sequence[Linear], ends: Sequence[tuple[Response, Response]], draws: int = DRAWS
+    box: ToleranceBox,
+    finer: LinearResponse,
+    coarser: Sequence[LinearResponse],
+    ends: Sequence[tuple[Response, Response]],
+    draws: int = DRAWS,
 ) -> dict[str, Any] | None:
     """Force and voltage at SHARES of the draws, and what the process misses of presses that are left out.
 

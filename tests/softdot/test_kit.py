@@ -61,10 +61,16 @@ mesher = "layered"
 """
 )
 NOMINAL, CHANGE, NOTHING = Response(0.5, 9.0), Response(0.05, 1.8), Response(0.0, 0.0)
+PERCENTILES = ("below_5_percent", "below_50_percent", "below_95_percent")
 MADE_UP = Budget(
     NOMINAL, NOTHING, CHANGE,
     (Effect(Tolerance("height of the dot", 0.5, 0.1, "mm", "a book", "high"), CHANGE, NOTHING, "derivative"),),
     (0.6, 0.2),
+    {
+        "count": 10_000, "presses": 7, "left_out_error": {"force_percent": 0.5, "voltage_percent": 1.5},
+        "force_N": dict(zip(PERCENTILES, (0.41, 0.5, 0.61), strict=True)),
+        "voltage_V": dict(zip(PERCENTILES, (7.1, 9.0, 11.2), strict=True)),
+    },
 )  # fmt: skip
 
 

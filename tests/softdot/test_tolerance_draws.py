@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from softdot.tolerances.draws import DRAWS, Box, Linear, drawn
+from softdot.tolerances.draws import DRAWS, LinearResponse, ToleranceBox, drawn
 from softdot.tolerances.responses import Response
 from softdot.tolerances.tolerances import Tolerance
 
@@ -25,12 +25,12 @@ def press(changes, scale=1.0):
         "e": Response(force / e, -0.5 * voltage / e),
         "d": Response(1.5 * force / d, voltage / d),
     }
-    return Linear(Response(force, voltage), slopes)
+    return LinearResponse(Response(force, voltage), slopes)
 
 
 def test_percentiles_are_those_of_the_response_itself():
     """Against 200,000 draws of the closed form; a coarser mesh that is 5 % too stiff everywhere changes nothing."""
-    box = Box.of(ROWS, NOMINAL.get)
+    box = ToleranceBox.of(ROWS, NOMINAL.get)
     found = drawn(box, press({}), [press(box.changes(place), 1.05) for place in box.places], [])
     off = np.random.default_rng(5).uniform(-1.0, 1.0, (200_000, 3)) * [0.2, 0.3, 0.02]
     t, e, d = (NOMINAL[key] + off[:, n] for n, key in enumerate("ted"))
@@ -42,7 +42,7 @@ def test_percentiles_are_those_of_the_response_itself():
 
 def test_the_ends_of_a_quantity_without_slopes_make_a_parabola():
     """An even one only lowers the voltage, an odd one is drawn to both sides."""
-    box = Box.of(ROWS[:1], NOMINAL.get)
+    box = ToleranceBox.of(ROWS[:1], NOMINAL.get)
     places = [press(box.changes(place)) for place in box.places]
     force, voltage = press({}).nominal
     even, odd = (Response(force, 0.9 * voltage),) * 2, (Response(force, 1.1 * voltage), Response(force, voltage / 1.1))
@@ -55,14 +55,16 @@ def test_the_ends_of_a_quantity_without_slopes_make_a_parabola():
 
 
 def test_a_voltage_that_changes_its_sign_is_not_drawn():
-    box = Box.of(ROWS, NOMINAL.get)
+    box = ToleranceBox.of(ROWS, NOMINAL.get)
     places = [press(box.changes(place)) for place in box.places]
-    turned = Linear(Response(places[2].nominal.force, -places[2].nominal.voltage), places[2].slopes)
+    turned = LinearResponse(Response(places[2].nominal.force, -places[2].nominal.voltage), places[2].slopes)
     assert drawn(box, press({}), [*places[:2], turned, *places[3:]], []) is None
 
 
 def test_places_lie_in_the_box_and_keys_of_several_rows_add():
-    box = Box.of([*ROWS[:2], Tolerance("radius", None, 10.0, "%", "", "low", {"t": 0.01, "d": 0.003})], NOMINAL.get)
+    box = ToleranceBox.of(
+        [*ROWS[:2], Tolerance("radius", None, 10.0, "%", "", "low", {"t": 0.01, "d": 0.003})], NOMINAL.get
+    )
     assert np.abs(box.places).max() <= 1.0
     assert not box.places[0].any()
     assert box.changes(np.array([1.0, 0.0, -1.0])) == pytest.approx({"t": 0.1, "e": 0.0, "d": -0.03})
