@@ -13,8 +13,8 @@ from softdot.studio.session import Session
 MOST_TABS = 12
 FIRST_PARTS_S = 1.0
 """The tab that waits has its form before another process loads the solver."""
-GRACE_S = 5.0
-"""A tab that is loaded again is back within that time; after it its processes end."""
+GRACE_S = 20.0
+"""A tab that is loaded again is back within that time, on a busy machine too; after it its processes end."""
 
 
 class Tabs:
@@ -23,6 +23,7 @@ class Tabs:
     def __init__(self, guard: Guard, studio: Studio, start: str) -> None:
         self.guard, self.studio, self.start = guard, studio, start
         self.sessions: dict[str, Session] = {}
+        self._leaving: dict[str, asyncio.TimerHandle] = {}
         self._form = asyncio.ensure_future(self._load())
 
     async def form(self) -> Any:
@@ -45,6 +46,8 @@ class Tabs:
         """
         known = self.sessions.get(name or "")
         if known is not None and not (is_copy and known.line is not None):
+            if known.name in self._leaving:
+                self._leaving.pop(known.name).cancel()  # it may leave again, and then has the whole time
             return known
         self._make_room()
         saved = None
@@ -71,11 +74,12 @@ class Tabs:
     def left(self, session: Session) -> None:
         """A tab is gone: give up its work unless it comes back soon."""
         session.line = None
-        asyncio.get_running_loop().call_later(GRACE_S, self._forget, session)
+        self._leaving[session.name] = asyncio.get_running_loop().call_later(GRACE_S, self._forget, session)
 
     def _forget(self, session: Session) -> None:
         if session.line is None and self.sessions.get(session.name) is session:
             del self.sessions[session.name]
+            self._leaving.pop(session.name, None)
             session.close()
 
     def close(self) -> None:

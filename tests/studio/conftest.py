@@ -95,7 +95,7 @@ class Tab:
         self.page.on("pageerror", lambda error: self.wrong.append(str(error)))
         self.page.on("console", self._hear)
         self.page.goto(address)
-        self.page.locator("#form .field").first.wait_for(state="attached", timeout=120_000)
+        self.page.locator("#form .field").first.wait_for(state="attached", timeout=60_000)
         if self.page.locator("#start").is_visible():  # a tab with the default design begins there
             self.page.locator("#start .go").click()
 

@@ -102,7 +102,8 @@ def test_a_closed_tab_ends_its_work_and_its_design_is_found_by_the_next_start(st
     again = open_tab(running.address)
     again.write(QUICK)
     again.page.locator("#undo:enabled").wait_for()
-    again.page.locator("#earlier").select_option(index=1)
+    again.page.locator("#begin").click()
+    again.page.locator("#earlier button").first.click()
     until(lambda: again.text == SLOW_PRESS)
     assert running.end() == 0
 

@@ -20,7 +20,7 @@ function length(from, to, out, words) {
     node("path", { d: `M${x1} ${y1}L${x2} ${y2}` }),
   );
   const label = {
-    x: (x1 + x2) / 2 + 0.9 * out[0],
+    x: (x1 + x2) / 2 + 0.35 * out[0],
     y: (y1 + y2) / 2 + 0.9 * out[1] + 4,
     "text-anchor": Math.abs(out[0]) < 5 ? "middle" : out[0] > 0 ? "start" : "end",
   };

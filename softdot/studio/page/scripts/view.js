@@ -7,6 +7,7 @@ import { colourBar, drawMarks, legend } from "./marks.js";
 
 // Room beside the body for what is written there, in px.
 const ROOM = { left: 12, right: 136, top: 34, bottom: 52 },
+  NARROW = { below: 480, left: 2, right: 46 }, // a canvas where the buttons of the views stand in a row above the body
   ROOM_OF_BAR = 34;
 const TICK_MS = 400,
   REST_MS = 60;
@@ -111,7 +112,8 @@ export class View {
   fit() {
     if (!this.data) return;
     const bottom = ROOM.bottom + (this.bodies.shown ? ROOM_OF_BAR : 0);
-    this.camera.fit(this.corners(), { ...ROOM, bottom });
+    const sides = this.canvas.clientWidth < NARROW.below ? NARROW : ROOM;
+    this.camera.fit(this.corners(), { ...ROOM, left: sides.left, right: sides.right, bottom });
     this.draw();
   }
 
