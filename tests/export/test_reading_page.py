@@ -16,6 +16,7 @@ from export.array.reading_page import (
 )
 from foundation.errors import InputError
 from geometry.braille_cells import dot_offset_mm, raised_dots
+from tests.axe import axe
 from tests.cases import for_each
 
 LETTERS = dict(zip("abcdefghijklmnopqrstuvwxyz ", "⠁⠃⠉⠙⠑⠋⠛⠓⠊⠚⠅⠇⠍⠝⠕⠏⠟⠗⠎⠞⠥⠧⠺⠭⠽⠵⠀", strict=True))
@@ -237,11 +238,11 @@ def test_where_motion_is_not_wanted_it_goes_from_cell_to_cell(page_at):
 @pytest.mark.browser
 @for_each(("scheme", "width"), [("light", 1366), ("dark", 1366), ("light", 400), ("dark", 400)])
 def test_axe_finds_nothing_serious_in_a_reading(page_at, scheme, width):
-    axe_package = pytest.importorskip("axe_playwright_python.sync_playwright")
+    checker = axe()
     page = page_at(width, color_scheme=scheme, bypass_csp=True)
     page.locator(".line").focus()
     page.keyboard.press("End")
-    found = axe_package.Axe().run(page).response["violations"]
+    found = checker.run(page).response["violations"]
     assert [(one["id"], one["nodes"][0]["html"][:120]) for one in found if one["impact"] in SERIOUS] == []
     assert page.evaluate("document.documentElement.scrollWidth") <= width
 

@@ -4,17 +4,17 @@ import time
 
 import pytest
 
+from tests.axe import axe
 from tests.cases import for_each
 from tests.studio.test_array import PAIR
 
-axe_package = pytest.importorskip("axe_playwright_python.sync_playwright")
 pytestmark = pytest.mark.browser
 SERIOUS = ("serious", "critical")
 
 
 def serious(page):
     """What axe-core finds, and where."""
-    found = axe_package.Axe().run(page).response["violations"]
+    found = axe().run(page).response["violations"]
     return [(one["id"], [node["html"][:120] for node in one["nodes"][:3]]) for one in found if one["impact"] in SERIOUS]
 
 

@@ -13,6 +13,8 @@ from softdot import Case, load_config
 from tests.diagnose.rigs import write_rig
 from tests.studio.conftest import QUICK, Tab
 
+pytestmark = pytest.mark.browser
+
 SLIDERS = ("segment.medium1.thickness_mm", "segment.medium2.thickness_mm", "press.indentation_mm")
 
 
@@ -61,7 +63,6 @@ def at_full_load(tab: Tab) -> float:
     return float(said[1]) * (1e-3 if said[2] else 1.0) if said else float("nan")
 
 
-@pytest.mark.browser
 def test_three_sliders_change_the_curves_to_the_numbers_of_a_run(studio, open_tab, tmp_path):
     tab = open_tab(studio.address)
     listen(tab)
@@ -89,7 +90,6 @@ def test_three_sliders_change_the_curves_to_the_numbers_of_a_run(studio, open_ta
     until(lambda: tab.page.locator("#numbers dd", has_text="±").count() == 3)
 
 
-@pytest.mark.browser
 def test_the_amplifier_answers_from_the_solved_charge(studio, open_tab, tmp_path):
     tab = open_tab(studio.address)
     listen(tab)
@@ -143,7 +143,6 @@ def test_a_mechanism_is_a_switch(studio, open_tab):
     assert "film-prestretch" not in tab.text
 
 
-@pytest.mark.browser
 def test_a_tab_that_is_loaded_again_has_its_design_and_another_tab_its_own(studio, open_tab):
     first, second = open_tab(studio.address), open_tab(studio.address)
     first.write(QUICK.replace("0.5", "0.61"))
@@ -156,7 +155,6 @@ def test_a_tab_that_is_loaded_again_has_its_design_and_another_tab_its_own(studi
         assert tab.page.locator("#undo").is_enabled()
 
 
-@pytest.mark.browser
 def test_a_dropped_recording_is_read(studio, open_tab, tmp_path):
     rig = write_rig(tmp_path / "rig")
     text = (
@@ -205,7 +203,6 @@ def test_a_mistake_leads_to_its_number_also_where_a_search_hides_it(studio, open
     tab.says("#press .doing", "has a mistake")
 
 
-@pytest.mark.browser
 def test_numbers_and_files_of_the_design_before_say_so(studio, open_tab):
     tab = open_tab(studio.address)
     tab.pressed()

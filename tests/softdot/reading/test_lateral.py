@@ -44,6 +44,7 @@ def test_a_place_that_was_seen_is_that_of_the_prior_given_it():
     assert spread[1, 1] == pytest.approx(SLOPE**2)
 
 
+@pytest.mark.press
 def test_it_moves_and_learns_by_the_equations_of_kalman():
     mean, spread = matrix(start := seen_at(-0.8, 0.3)[0])
     way, fade, noise, slope, charge = 1.7, 0.9, 9.0, 40.0, -20.0

@@ -19,6 +19,8 @@ from softdot.reading.learned_kernel.touches import Touches, join_touches, letter
 from tests.cases import for_each
 from tests.softdot.reading.made_touches import made_touches
 
+pytestmark = pytest.mark.press
+
 MET, NOT_MET = "abcdefgijlmnpqstuw", "hkorvx"
 
 
