@@ -3,7 +3,6 @@
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import tomlkit
 
 from foundation.arrays import Floats
@@ -52,12 +51,12 @@ def _pressed(family: Family, place: Floats) -> dict[str, float]:
     result = prepared.solve()
     if not result.converged:
         raise StoppedShortError(str(result.failure))
-    deepest = result.steps[int(np.argmax([step.indentation_m for step in result.steps]))]
-    voltage = history(result).open_circuit_voltage_V
+    last = result.steps[-1]
+    voltage = history(result).open_circuit_voltage_V[-1]
     return {
-        "reaction_force_N": abs(float(deepest.reaction_force_N)),
-        "film_charge_pC": abs(float(1e12 * deepest.film_charge_C.sum())),
-        "open_circuit_voltage_V": abs(float(voltage[int(np.argmax(np.abs(voltage)))])),
+        "reaction_force_N": abs(float(last.reaction_force_N)),
+        "film_charge_pC": abs(float(1e12 * last.film_charge_C.sum())),
+        "open_circuit_voltage_V": abs(float(voltage)),
     }
 
 

@@ -13,6 +13,7 @@ from softdot.tolerances.factors import with_factors
 from softdot.tolerances.questions import Question, answer_all
 from softdot.tolerances.responses import Response, coarser_press
 from softdot.tolerances.tolerances import Tolerance, shifts, tolerances
+from softdot.tolerances.uncertainty import PRESS_ERRORS
 
 MESH_FACTOR, CHECK_FACTOR = 2.0, 3.0
 """Element sizes of the budget and of its check, over those of the configuration."""
@@ -83,9 +84,7 @@ def tolerance_budget(
     box = ToleranceBox.of(rows, lambda key: value_of(factored, key))
     together = box_questions(coarse, box, keys)
     found = answer_all(
-        {NOMINAL_QUESTION: Question(fine, keys), **ends, CHECK_QUESTION: Question(coarse, keys), **together},
-        executor,
-        report,
+        {NOMINAL_QUESTION: Question(fine, keys), **ends, CHECK_QUESTION: Question(coarse, keys)}, executor, report
     )
     (nominal, by_key), (check, check_by_key) = found[NOMINAL_QUESTION], found[CHECK_QUESTION]
     effects = [_effect_by_derivatives(row, by_key, check_by_key) for row in rows]
@@ -93,7 +92,11 @@ def tolerance_budget(
         _effect_by_ends(row, nominal, *(found[f"{row.label}, {way}"] for way in END_NAMES)) for row, *_ in moved
     ]
     effects.sort(key=lambda effect: -abs(effect.change.voltage))
-    known = [LinearResponse(*found[name]) for name in (CHECK_QUESTION, *together)]
+    try:
+        places = answer_all(together, executor, report)
+    except PRESS_ERRORS:  # a budget of the effects one by one is worth having without a press of all at once
+        places, together = {}, {}
+    known = [LinearResponse(check, check_by_key), *(LinearResponse(*places[name]) for name in together)]
     both = [(found[f"{row.label}, {END_NAMES[0]}"], found[f"{row.label}, {END_NAMES[1]}"]) for row, *_ in moved]
     off_at_once = drawn(box, LinearResponse(nominal, by_key), known, both) if together else None
     return Budget(

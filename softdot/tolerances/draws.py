@@ -14,6 +14,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from foundation.arrays import Floats
+from foundation.errors import InputError
 from softdot.config.schema import Config
 from softdot.differentiation import with_changes
 from softdot.families.gradient_process import GradientProcess
@@ -25,6 +26,8 @@ from softdot.tolerances.tolerances import Tolerance
 DRAWS, SEED = 10_000, 0
 PLACES = 6
 """Presses in the box besides the nominal one."""
+LARGEST_CHANGE = 0.9
+"""Relative change beyond which a quantity has no useful logarithm."""
 SHARES = (0.05, 0.5, 0.95)
 """Shares of the draws that lie below what is told."""
 
@@ -83,17 +86,19 @@ class ToleranceBox:
 
 
 def box_questions(config: Config, box: ToleranceBox, keys: tuple[str, ...]) -> dict[str, Question]:
-    """The presses at all places but the nominal one, by their names; none where the path of the press matters.
+    """The presses at all places but the nominal one, by their names; none where the path of the press matters, and
+    where a quantity may nearly vanish, or a place cannot be built.
 
-    config : on the mesh of these presses. InputError for a place that cannot be built.
+    config : on the mesh of these presses.
     """
     factored = with_factors(config)
-    if path_matters(factored):
+    if path_matters(factored) or np.abs(box.relative).max(initial=0.0) > LARGEST_CHANGE:
         return {}
-    return {
-        f"all off at once, {number}": Question(config, keys, with_changes(factored, box.changes(place)))
-        for number, place in enumerate(box.places[1:], 1)
-    }
+    try:
+        moved = [with_changes(factored, box.changes(place)) for place in box.places[1:]]
+    except InputError:
+        return {}
+    return {f"all off at once, {number}": Question(config, keys, one) for number, one in enumerate(moved, 1)}
 
 
 def drawn(

@@ -2,9 +2,12 @@
 
 import pytest
 
+from foundation.executor import HERE
 from softdot.config.loading import config_from
+from softdot.tolerances import budget as budgets
 from softdot.tolerances import questions
 from softdot.tolerances.budget import tolerance_budget
+from softdot.tolerances.draws import ToleranceBox, box_questions
 from softdot.tolerances.factors import FACTORS, factor_key, with_factors
 from softdot.tolerances.responses import (
     KitPress,
@@ -15,7 +18,8 @@ from softdot.tolerances.responses import (
     solved_mesh,
     value_along,
 )
-from softdot.tolerances.tolerances import shifts, tolerances
+from softdot.tolerances.tolerances import Tolerance, shifts, tolerances
+from solve.solution.full_load import StoppedShortError
 from tests.cases import for_each
 
 TABLES = {
@@ -213,6 +217,26 @@ def budget(config, monkeypatch, tmp_path):
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
     monkeypatch.setattr(questions, "KitPress", MadeUp)
     return tolerance_budget(config)
+
+
+def test_a_budget_stands_without_the_press_of_all_off_at_once(config, budget, monkeypatch, tmp_path):
+    """Where one of these stops short, and where a quantity may vanish, so that it has no logarithm."""
+
+    def stops(*_):
+        raise StoppedShortError("too far")
+
+    monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path / "other"))
+    monkeypatch.setattr(questions.KitPress, "slopes_at", stops)
+    monkeypatch.setattr(questions.KitPress, "value", lambda *_: Response(1.0, 9.0))
+    asked = {"all off at once, 1": questions.Question(config, ("press.indentation_mm",), config)}
+    with pytest.raises(StoppedShortError):
+        questions.answer_all(asked, HERE, lambda *_: None)
+    monkeypatch.setattr(budgets, "box_questions", lambda *_: asked)
+    without = tolerance_budget(config)
+    assert without.drawn is None
+    assert len(without.effects) == len(budget.effects)
+    row = Tolerance("thickness", 0.2, 0.2, "mm", "", "high", {"t": 5.0})
+    assert box_questions(config, ToleranceBox.of([row], {"t": 1.0}.get), ("t",)) == {}
 
 
 def test_largest_effect_on_the_voltage_comes_first(budget):
