@@ -15,6 +15,8 @@ from softdot.config.loading import config_from
 from softdot.kit.folder import contents_of
 from tests.cases import for_each
 
+pytestmark = pytest.mark.press
+
 EFFECTORS = {
     "none": None,
     "layer": {"height_mm": 1.0},
@@ -58,8 +60,6 @@ ARRAYS = {
     "islands": (EFFECTORS["layer"], CELL, {**SHEETS, "cable_exit": "+y"}, {"shared": ["film"]}),
     "row": (EFFECTORS["layer"], CELL, {**SHEETS, "cable_exit": "-y"}, {"columns": 5, "rows": 1, "shared": ["film"]}),
     "without effector": (None, CELL, {"routes": {"medium1": "sheet", "medium2": "sheet"}}, {}),
-}
-MORE_ARRAYS = {
     "cast": (EFFECTORS["layer"], CELL, {}, {}),
     "domes over grooves, two cells": (EFFECTORS["dome"] | {"diameter_mm": 1.6, "height_mm": 0.6},
                                       CELL, {"cable_exit": "+y"}, {"cells": 2, "grooves": GROOVES}),
@@ -139,12 +139,10 @@ def refuse_parts_that_are_not_there(contents):
     assert ("cavit" in text) == bool(contents.solid.pours)
 
 
-@pytest.mark.press
 def test_every_part_can_be_printed(contents):
     refuse_unprintable(contents)
 
 
-@pytest.mark.press
 def test_every_instruction_fits_its_shape(contents):
     refuse_what_the_shape_has_not(contents)
 
@@ -153,9 +151,9 @@ def test_every_instruction_names_what_is_there(contents):
     refuse_parts_that_are_not_there(contents)
 
 
-@pytest.mark.parametrize("name", [*ARRAYS, *(pytest.param(one, marks=pytest.mark.press) for one in MORE_ARRAYS)])
+@pytest.mark.parametrize("name", ARRAYS)
 def test_arrays_of_all_kinds(name):
-    found = contents_for((ARRAYS | MORE_ARRAYS)[name])
+    found = contents_for(ARRAYS[name])
     refuse_unprintable(found)
     refuse_what_the_shape_has_not(found)
     refuse_parts_that_are_not_there(found)
@@ -181,7 +179,6 @@ def test_a_narrow_effector_is_centred_and_not_pushed_against_the_stops(contents)
     assert ("centres it" in text) == narrow
 
 
-@pytest.mark.press
 def test_a_dome_is_measured_at_its_crown():
     """Its edge is thin by design."""
     found = contents_for(DESIGNS["dome"])
@@ -198,7 +195,6 @@ def test_a_dome_too_low_for_a_mould_is_not_sent_to_a_sheet():
         contents_for((low, {}, {}))
 
 
-@pytest.mark.press
 @for_each("name", MORE)
 def test_other_sizes_and_other_frames(name):
     found = contents_for(MORE[name])

@@ -19,6 +19,8 @@ from geometry.solids import volume_mm3
 from softdot.cli import main
 from softdot.plate import folder as make
 
+pytestmark = pytest.mark.press
+
 BRAILLE = "⠃⠗⠁⠊⠇⠇⠑"
 # diameter, height, dot pitch, cell pitch in mm, as the sources of the table print them; ADA: the middle of its ranges
 STANDARDS = {
@@ -67,7 +69,6 @@ def measured_dots(surface, face=FACE_MM):
     return np.array(rows)
 
 
-@pytest.mark.press
 def test_dots_of_the_exported_surface_have_the_sizes_of_the_standard(written):
     (diameter, height, _, _), folder = written
     dots = measured_dots(trimesh.load(folder / "plate.stl"))
@@ -76,7 +77,6 @@ def test_dots_of_the_exported_surface_have_the_sizes_of_the_standard(written):
     assert dots[:, 3] == pytest.approx(height, abs=0.01)
 
 
-@pytest.mark.press
 def test_a_reader_above_reads_the_word_at_the_pitches_of_the_standard(written):
     """Every dot lies within 0.01 mm of a place of the grid that the pitches give, and the places spell braille."""
     (_, _, pitch, cell_pitch), folder = written
@@ -93,7 +93,6 @@ def test_a_reader_above_reads_the_word_at_the_pitches_of_the_standard(written):
     assert "".join(chr(0x2800 + bits) for bits in cells) == BRAILLE
 
 
-@pytest.mark.press
 def test_step_stl_and_3mf_hold_the_same_closed_part(written):
     _, folder = written
     summary = json.loads((folder / "plate.json").read_text("utf-8"))
@@ -162,7 +161,6 @@ def test_the_other_kinds(tmp_path):
     assert measured_dots(surface, flat)[0] == pytest.approx([0, 0, 1.5, 0.5], abs=0.01)
 
 
-@pytest.mark.press
 def test_json_and_pictures_of_the_whole_command(tmp_path, capfd):
     assert main(["plate", "⠃⠗", "--standard", "nls", "-o", str(tmp_path / "out"), "--json"]) == 0
     assert json.loads(capfd.readouterr().out) == json.loads((tmp_path / "out/plate.json").read_text("utf-8"))
@@ -242,7 +240,6 @@ def slicer(*arguments):
     return done.stdout + done.stderr
 
 
-@pytest.mark.press
 @needs_slicer
 @pytest.mark.parametrize("arguments", SLICED.values(), ids=SLICED)
 def test_prusaslicer_slices_every_kind_by_the_advised_process(tmp_path, arguments):
@@ -259,7 +256,6 @@ def test_prusaslicer_slices_every_kind_by_the_advised_process(tmp_path, argument
     assert "repair" not in said.lower()
 
 
-@pytest.mark.press
 @needs_slicer
 def test_layers_of_the_slicer_show_the_dots(tmp_path):
     """The first layer over the face of a Marburg plate shows 17 discs of the right area."""
@@ -286,7 +282,6 @@ def test_layers_of_the_slicer_show_the_dots(tmp_path):
     assert layer.sum() * pixel_mm2 == pytest.approx(17 * np.pi * radius_squared, rel=0.03)
 
 
-@pytest.mark.press
 @needs_slicer
 def test_prusaslicer_slices_a_plate_for_fdm_too(tmp_path):
     folder = write(tmp_path / "out", *SLICED["text"])

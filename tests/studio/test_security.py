@@ -25,6 +25,8 @@ from softdot.studio.tabs import MOST_TABS
 from tests.cases import for_each
 from tests.diagnose.rigs import HEAD, RUN, SEGMENT, write_rig
 
+pytestmark = pytest.mark.process
+
 FAR = "http://evil.example"
 LIMIT_MB = 25
 NAMES = "report.html", "kit.zip"
@@ -269,7 +271,6 @@ def test_a_message_that_is_too_long_closes_the_socket(studio):
     assert spoken(studio, "x" * (2 << 20), answers=["never"]) == {"closed": True}
 
 
-@pytest.mark.process
 @for_each("name", ["/etc/passwd", "../secret.csv", "C:\\secret.csv", "/dev/zero"])
 @for_each("key", ["mesh", "press.waveform"])
 def test_a_design_of_somebody_else_reads_no_file_outside(studio, name, key):
@@ -350,7 +351,6 @@ def test_the_key_is_no_argument_of_the_browser_and_its_file_is_closed_to_others(
     place.parent.rmdir()
 
 
-@pytest.mark.process
 def test_saved_designs_are_closed_to_others_and_the_log_holds_no_key(start_studio):
     running = start_studio()
     assert asked(running, "/?key=wrong")[0] == 403
@@ -388,7 +388,6 @@ def test_bad_arguments_are_refused_in_one_sentence(tmp_path, arguments, said):
     assert len([line for line in done.stderr.splitlines() if "warning" not in line]) == 1
 
 
-@pytest.mark.process
 def test_a_recording_of_somebody_else_reads_no_file_outside(studio, tmp_path):
     """It is refused when it is read, and is then no recording that could be diagnosed."""
     rig = write_rig(tmp_path / "rig", HEAD + '[mesh]\nfile = "/etc/passwd"\n' + SEGMENT + RUN)

@@ -19,6 +19,8 @@ from softdot.diagnosis.engine import engine_for
 from softdot.diagnosis.improved import improved_text
 from tests.diagnose.segment import rigs
 
+pytestmark = pytest.mark.press
+
 TABLES = {
     **rigs.TABLES,
     "mesh": {"element_size_mm": 0.9, "contact_element_size_mm": 0.35},
@@ -67,7 +69,6 @@ STATED = {
 }
 
 
-@pytest.mark.press
 @pytest.mark.parametrize(("mechanism", "component"), STATED.values(), ids=STATED)
 def test_what_was_found_and_what_is_stated_give_the_same_signals(believed, tmp_path, mechanism, component):
     """At a value that was pressed, so that nothing is interpolated."""
@@ -85,7 +86,6 @@ def test_what_was_found_and_what_is_stated_give_the_same_signals(believed, tmp_p
         assert any(np.abs(one[name] - without[name]).max() > 0.02 * np.abs(without[name]).max() for name in one)
 
 
-@pytest.mark.press
 def test_what_is_stated_is_no_candidate_too(tmp_path):
     tables = {**TABLES, "mechanisms": [{"name": "friction", "component": "dot", "parameters": {"coefficient": 0.5}}]}
     stated = engine_for(rig(tmp_path, tables), rigs.silent)

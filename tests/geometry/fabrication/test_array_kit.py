@@ -20,6 +20,8 @@ from geometry.flat.flat_kit import flat_kit
 from geometry.parameters import Dot, Effector, Film, Medium, Segment
 from tests.cases import for_each
 
+pytestmark = pytest.mark.press
+
 OWN = CastingNumbers(shrinkage_percent=2.0, density_g_cm3=1.1)
 """Shrinks ten times as much as silicone, so that a forgotten compensation shows."""
 DOME = Effector(shape="dome", diameter_mm=1.6, height_mm=0.6, material="own")
@@ -56,16 +58,12 @@ def kit_of(name):
     return device, solid_kit(device, made)
 
 
-QUICK = ("grid", "domes over grooves")
-SLOW = [pytest.param(name, marks=pytest.mark.press) for name in ARRAYS if name not in QUICK]
-
-
 def device_of(name):
     array, more = ARRAYS[name]
     return a_device(array, **more), fabrication(**more.get("made", {}))
 
 
-@pytest.fixture(scope="module", params=[*QUICK, *SLOW])
+@pytest.fixture(scope="module", params=list(ARRAYS))
 def kit(request):
     return kit_of(request.param)
 
@@ -80,7 +78,6 @@ def designed_volumes(device):
     return found
 
 
-@pytest.mark.press
 def test_castings_have_the_volume_of_the_arrays_layers(kit):
     """What the shrunk voids hold, as many of them as there are pieces, is what the simulated array is made of."""
     device, solids = kit

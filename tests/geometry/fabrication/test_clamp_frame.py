@@ -11,6 +11,8 @@ from geometry.parameters import Effector
 from geometry.solids import layer_solids
 from tests.cases import for_each
 
+pytestmark = pytest.mark.press
+
 GLUE, AIR = 0.05, 0.3
 
 

@@ -11,6 +11,8 @@ from geometry.parameters import Effector
 from geometry.solids import layer_solids
 from tests.cases import for_each
 
+pytestmark = pytest.mark.press
+
 CYLINDER = Effector(shape="cylinder", diameter_mm=1.6, height_mm=0.7)
 
 

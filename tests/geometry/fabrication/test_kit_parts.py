@@ -9,6 +9,8 @@ from build123d import import_step
 
 from export.cad import write_step, write_stl
 
+pytestmark = pytest.mark.press
+
 
 @pytest.fixture(scope="module")
 def written(design, tmp_path_factory):
@@ -52,7 +54,6 @@ def test_step_volumes_come_back(written):
         assert found[part.label].volume == pytest.approx(part.volume_mm3, rel=1e-6)
 
 
-@pytest.mark.press
 @pytest.mark.skipif(shutil.which("prusa-slicer") is None, reason="PrusaSlicer is not installed")
 def test_prusaslicer_slices_every_part_without_a_manifold_warning(written, tmp_path):
     design, folder = written

@@ -9,6 +9,8 @@ from geometry.fabrication.device import lone_device
 from geometry.fabrication.parameters import CastingNumbers, Fabrication, castable_materials, recipe_for
 from geometry.parameters import Effector, Medium
 
+pytestmark = pytest.mark.press
+
 SHRINKAGE = {"own": 0.04, "vnr": 0.001}
 RADIUS = (1.0 + 0.64) / 1.6  # of a cap of 2 mm across and 0.8 mm high
 VOLUMES = {

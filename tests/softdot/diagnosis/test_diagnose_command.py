@@ -23,6 +23,8 @@ from tests.diagnose.verdict.test_verdict import QUIET, SHAPE, require
 from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording, toy_run
 from tests.softdot.diagnosis.toy_rig import write_toy
 
+pytestmark = pytest.mark.press
+
 LEAKS, RELAXES = fitted(LEAK, 0.5), fitted(RELAXING, 0.3, 0.09)
 NAMED = {"models": (LEAKS, RELAXES), "best": LEAKS, "groups": ((0,), (1,))}
 UNEXPLAINED = {**NAMED, "best": None, "unexplained": True, "reasons": ("Its residual is larger than noise makes it.",)}

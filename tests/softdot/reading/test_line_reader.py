@@ -27,6 +27,8 @@ from tests.cases import for_each
 from tests.softdot.reading.lines import READOUT, simulated
 from tests.softdot.reading.made_kernel import made_kernel
 
+pytestmark = pytest.mark.press
+
 TEXT = "read by touch"
 MARBURG = standard("marburg-medium")
 FAST = {"speed_mm_per_s": 50.0, "seed": 3}
@@ -78,7 +80,6 @@ def test_what_comes_later_changes_no_cell_that_was_given_out():
     assert len(early[0]) >= 3
 
 
-@pytest.mark.press
 @for_each(
     "changed",
     [
@@ -100,7 +101,6 @@ def test_what_was_found_of_the_line_is_told():
     assert humming.hum_Hz == pytest.approx(47.3, abs=0.05)
 
 
-@pytest.mark.press
 def test_a_constant_factor_changes_nothing():
     """Charges are compared with those of the first seconds."""
     voltage = line()[1].voltage_V
@@ -172,7 +172,6 @@ def test_a_drifting_hum_is_followed():
     assert state[0] * 500.0 / (2.0 * np.pi) == pytest.approx(57.3, abs=0.02)
 
 
-@pytest.mark.press
 def test_the_preset_of_a_hand_is_read():
     track = track_hand(*line(**HAND, seed=5))
     assert text_of(track.cells) == TEXT
@@ -191,7 +190,6 @@ def test_rows_and_columns_of_leads_that_are_exchanged_are_told_by_the_cells():
                 assert likelier_order(bits[:, dots] @ (1 << np.arange(6))) is not None, dots
 
 
-@pytest.mark.press
 @for_each(
     "wiring", ["two leads of two rows", "shifted by one", "order reversed", "columns", "one reversed", "row dead"]
 )
@@ -209,7 +207,6 @@ def test_a_wrong_wiring_is_never_silent(wiring):
     assert text_of(decode(track).cells) == TEXT or not track.is_whole
 
 
-@pytest.mark.press
 def test_a_known_line_tells_leads_gains_and_width(tmp_path):
     """Of a sensor with 0.8 of the charges over places 5 % wider, whose leads are mixed up and turned."""
     order, text = [3, 4, 2, 6, 5, 1], "touch and read by hand"
