@@ -28,7 +28,8 @@ class Contents:
     """All that the build sheet shows. device : what is made. densities_g_cm3 : by layer.
 
     permittivity : relative, of the film. printability : one for each printed part.
-    budget : the tolerance budget as it stands in kit.json, None where there is none, and budget_note says why;
+    budget : the tolerance budget as it stands in kit.json, None where there is none, and budget_note says why.
+    crosstalk : the budget of an array's crosstalk as it stands in kit.json, None where there is none.
     readout : the stated amplifier. press : what is pressed, in words. pressed : what the budget is of, in words.
     """
 
@@ -40,6 +41,7 @@ class Contents:
     permittivity: float
     printability: tuple[Printability, ...]
     budget: Mapping[str, Any] | None
+    crosstalk: Mapping[str, Any] | None
     budget_note: str
     press: str
     pressed: str

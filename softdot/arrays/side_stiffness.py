@@ -70,6 +70,11 @@ def representatives(layout: ArrayLayout) -> dict[str, int]:
     return {name: found[name] for name in ROLES if name in found}
 
 
+def middle(layout: ArrayLayout) -> SegmentPlace:
+    """The segment nearest to the middle: an inner one where there is one."""
+    return layout.places[next(iter(representatives(layout).values()))]
+
+
 def held_candidates(layout: ArrayLayout) -> list[tuple[LayerName, ...]]:
     """Layers that springs may hold: those of a segment to whose sides something is joined; these without medium 2,
     which closes a cavity where its sides are held; the film alone, a thousand times stiffer than the rest.

@@ -6,12 +6,12 @@ import numpy as np
 
 from foundation.errors import InputError
 from geometry.array.checks import check_array
-from geometry.array.layout import ArrayLayout, SegmentPlace, array_layout
+from geometry.array.layout import ArrayLayout, array_layout
 from geometry.array.parameters import Array, Groove
 from geometry.parameters import LayerName
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.presses import ArrayPresses
-from softdot.arrays.side_stiffness import representatives
+from softdot.arrays.side_stiffness import middle
 from softdot.prepared_press import PreparedPress
 
 GROOVE_WIDTH, GROOVE_DEPTH = 0.1, 0.75
@@ -73,18 +73,14 @@ def variant_presses(case: ArrayCase) -> tuple[dict[str, PreparedPress], dict[str
         except InputError as error:
             why_not[name] = str(error)
         else:
-            presses[name] = other.press_over(_middle(case))
+            presses[name] = other.press_over(middle(case.layout))
     return presses, why_not
-
-
-def _middle(case: ArrayCase) -> SegmentPlace:
-    return case.layout.places[next(iter(representatives(case.layout).values()))]
 
 
 def worth(case: ArrayCase, solve: ArrayPresses) -> list[Worth]:
     """Worth of each way of joining, with the segment nearest to the middle pressed. StoppedPressError."""
     presses, why_not = variant_presses(case)
-    solved, place, found = solve(presses), _middle(case), []
+    solved, place, found = solve(presses), middle(case.layout), []
     number = case.layout.places.index(place)
     for name in ways(case.layout):
         if name in why_not:

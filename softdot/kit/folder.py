@@ -34,6 +34,7 @@ from softdot.progress import LaterSteps, Logged, Progress
 from softdot.system_libraries import name_missing_library
 from softdot.tolerances.budget import tolerance_budget
 from softdot.tolerances.budget_outcome import UNFINISHED, BudgetOutcome, failed_budget
+from softdot.tolerances.crosstalk import crosstalk_budget
 from solve.materials.parameters import PiezoelectricFilm
 from solve.solution.full_load import StoppedShortError
 from solve.solution.linear import LinearSolveError
@@ -129,6 +130,7 @@ def contents_of(config: Config, warnings: list[str]) -> Contents:
         permittivity=film.relative_permittivity,
         printability=printability,
         budget=None,
+        crosstalk=None,
         budget_note="",
         press=press_words(budget_config(config)),
         pressed=_budget_subject(config),
@@ -160,11 +162,20 @@ def _budget_outcome(config: Config, on_step: Callable[[int, int, str], None], ex
     """The tolerance budget, or the reason why there is none. AwayError."""
     try:
         budget = tolerance_budget(budget_config(config), on_step, executor)
-        return BudgetOutcome("complete", budget=plain(budget.as_dict()))
     except AwayError:
         raise
     except (InputError, LinearSolveError, MeshingError, StoppedShortError) as error:
         return failed_budget(error)
+    alone = BudgetOutcome("complete", budget=plain(budget.as_dict()))
+    if config.array is None:
+        return alone
+    try:
+        beside = crosstalk_budget(config, on_step, executor)
+    except InputError as error:  # such as a medium with memory, whose path matters
+        return replace(alone, note=f"There is no budget of the crosstalk: {error}.")
+    except (LinearSolveError, MeshingError, StoppedShortError) as error:
+        return replace(failed_budget(error), budget=alone.budget, failure=f"budget of the crosstalk: {error}")
+    return replace(alone, crosstalk=None if beside is None else plain(beside.as_dict()))
 
 
 def _write_files(contents: Contents, folder: Path) -> None:
@@ -182,7 +193,7 @@ def _write_files(contents: Contents, folder: Path) -> None:
 
 def _write_sheet(config: Config, contents: Contents, outcome: BudgetOutcome, folder: Path) -> dict[str, Any]:
     """Write the build sheet and kit.json, each replaced whole, kit.json last; the content of kit.json."""
-    contents = replace(contents, budget=outcome.budget, budget_note=outcome.note)
+    contents = replace(contents, budget=outcome.budget, crosstalk=outcome.crosstalk, budget_note=outcome.note)
     named = heading(config, KIT)
     write_page(contents, named, folder / "pictures", folder / "kit.html")
     summary: dict[str, Any] = plain(named | summary_of(contents, outcome.state, outcome.failure))

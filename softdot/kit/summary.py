@@ -63,6 +63,7 @@ def summary_of(contents: Contents, state: str, failure: str | None) -> dict[str,
         "checks": [asdict(check) for check in checks(contents)],
         "tolerance_budget": contents.budget,
         "tolerance_budget_of": contents.pressed,
+        "crosstalk_budget": contents.crosstalk,
     }  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""How the calculation of a tolerance budget ended: complete, unfinished or failed, and why."""
+"""How the calculation of a kit's tolerance budgets ended: complete, unfinished or failed, and why."""
 
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -12,12 +12,14 @@ from solve.solution.linear import LinearSolveError
 class BudgetOutcome:
     """Outcome of the calculation of a tolerance budget.
 
-    state : "unfinished" while it runs and after an interrupt. budget : as in kit.json. note : for the build sheet,
-    where there is no budget. failure : for kit.json and the command line, in the solver's own words.
+    state : "unfinished" while it runs and after an interrupt. budget : as in kit.json. crosstalk : that of an array's
+    crosstalk, None for one segment. note : for the build sheet, where one of them is missing. failure : for kit.json
+    and the command line, in the solver's own words.
     """
 
     state: Literal["unfinished", "complete", "failed"]
     budget: dict[str, Any] | None = None
+    crosstalk: dict[str, Any] | None = None
     note: str = ""
     failure: str | None = None
 

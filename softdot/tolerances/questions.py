@@ -1,7 +1,7 @@
 """Responses and derivatives that other processes calculate, one press each."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from foundation.cache import recall, remember
 from foundation.executor import Executor, completed_calls
@@ -9,6 +9,19 @@ from softdot.config.schema import Config
 from softdot.json_files import plain
 from softdot.tolerances.factors import with_factors
 from softdot.tolerances.responses import KitPress, Response, moved_label, response_name, slopes_label
+
+
+class StoredQuestion(Protocol):
+    """A question whose answer another process may give, and which is kept on disk."""
+
+    def answer(self) -> Any:
+        """The answer, calculated."""
+
+    def stored_answer(self) -> Any | None:
+        """The answer to an earlier equal question, None where there was none."""
+
+    def keep(self, answer: Any) -> None:
+        """Store an answer that another process gave."""
 
 
 class Question(NamedTuple):
@@ -61,7 +74,7 @@ def kept_press(config: Config) -> KitPress:
 
 
 def answer_all(
-    questions: Mapping[str, Question], executor: Executor, report: Callable[[int, int, str], None]
+    questions: Mapping[str, StoredQuestion], executor: Executor, report: Callable[[int, int, str], None]
 ) -> dict[str, Any]:
     """The answer to each question by its name. InputError, MeshingError, LinearSolveError, StoppedShortError.
 
@@ -70,9 +83,13 @@ def answer_all(
     found = {name: known for name, one in questions.items() if (known := one.stored_answer()) is not None}
     missing = {name: (one,) for name, one in questions.items() if name not in found}
     report(len(found), len(questions), "")
-    for name, future in completed_calls(executor, Question.answer, missing):
+    for name, future in completed_calls(executor, _answer, missing):
         found[name] = future.result()
         questions[name].keep(found[name])
         report(len(found), len(questions), name)
     _LAST_PRESS.clear()  # where the executor is this process
     return found
+
+
+def _answer(question: StoredQuestion) -> Any:
+    return question.answer()

@@ -23,7 +23,7 @@ from softdot.prepared_press import PreparedPress
 from softdot.summary import history
 from softdot.tolerances.factors import with_factors
 from solve.result import PressResult
-from solve.solution.full_load import FullLoad, StoppedShortError
+from solve.solution.full_load import FullLoad, FullResponse, StoppedShortError
 
 MOST_LOAD_STEPS = 3
 """Enough load steps for Newton's method; only the deepest one is asked for."""
@@ -112,7 +112,7 @@ class KitPress:
 
     def _at_full_load(self, keys: Sequence[str]) -> tuple[Floats, Response, dict[str, Response]]:
         slopes = self._full_load_slopes(keys)
-        return (self._full_load.electrode_voltages_V, *slopes)
+        return (self._full_load.answer.electrode_voltages, *slopes)
 
     def _full_load_slopes(self, keys: Sequence[str]) -> tuple[Response, dict[str, Response]]:
         changed = with_factors(self.config)
@@ -120,7 +120,7 @@ class KitPress:
             found = self._full_load.derivatives(variations_of(changed, keys))
         except ValueError as error:
             raise InputError(str(error)) from None
-        return Response(*self._full_load.answer), {key: Response(*answer) for key, answer in found.items()}
+        return _of_all(self._full_load.answer), {key: _of_all(answer) for key, answer in found.items()}
 
     def _slopes_at(self, moved: Config, keys: Sequence[str]) -> tuple[Response, dict[str, Response]]:
         model = model_of(moved)
@@ -131,12 +131,17 @@ class KitPress:
             raise InputError(str(error)) from None
         finally:
             load.close()
-        return Response(*load.answer), {key: Response(*answer) for key, answer in found.items()}
+        return _of_all(load.answer), {key: _of_all(answer) for key, answer in found.items()}
 
     def _value(self, moved: Config) -> Response:
         if path_matters(moved):
             return value_along(moved, morphed_mesh(self._mesh, self.config.segment, moved.segment))
-        return Response(*self._full_load.similar_answer(model_of(moved)))
+        return _of_all(self._full_load.similar_answer(model_of(moved)))
+
+
+def _of_all(answer: FullResponse) -> Response:
+    """Force and voltage of all electrodes in parallel."""
+    return Response(answer.force, answer.voltage)
 
 
 def path_matters(config: Config) -> bool:

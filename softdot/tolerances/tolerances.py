@@ -67,6 +67,17 @@ def shifts(config: Config) -> list[tuple[Tolerance, Config, Config]]:
 
     Their effect vanishes to first order by symmetry, or the edges of electrodes would pass whole points of the mesh.
     """
+    found = placement_shifts(config)
+    for row in _footprint(config.segment) if config.segment.film.electrodes else []:
+        ((key, _),) = row.slopes.items()
+        found.append(
+            (row, _with_other_size(config, key, row.plus_minus), _with_other_size(config, key, -row.plus_minus))
+        )
+    return found
+
+
+def placement_shifts(config: Config) -> list[tuple[Tolerance, Config, Config]]:
+    """Those of shifts that move the dot or turn the film, and change no size."""
     offset, angle = table()["dot"]["offset"], table()["film"]["draw_angle"]
     axes = (0,) if config.segment.section == "plane-strain" else (0, 1)
     found = []
@@ -77,11 +88,6 @@ def shifts(config: Config) -> list[tuple[Tolerance, Config, Config]]:
     film = config.segment.film
     row = _row("draw direction of the film", film.draw_angle_deg, angle["deg"], "°", angle)
     found.append((row, _with_turned_film(config, angle["deg"]), _with_turned_film(config, -angle["deg"])))
-    for row in _footprint(config.segment) if film.electrodes else []:
-        ((key, _),) = row.slopes.items()
-        found.append(
-            (row, _with_other_size(config, key, row.plus_minus), _with_other_size(config, key, -row.plus_minus))
-        )
     return found
 
 

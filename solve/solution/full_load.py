@@ -30,14 +30,15 @@ class StoppedShortError(RuntimeError):
 
 
 class FullResponse(NamedTuple):
-    """Force in N and open-circuit voltage in V of all electrodes in parallel, or their derivatives."""
+    """Force in N and open-circuit voltage in V of all electrodes in parallel and (e,) of each alone, or derivatives."""
 
     force: float
     voltage: float
+    electrode_voltages: Floats
 
 
 class FullLoad:
-    """A press under its full load, before any slide; answer : what it gives, electrode_voltages_V : (e,) of each alone.
+    """A press under its full load, before any slide; answer : what it gives.
 
     ValueError for a model whose path matters, InputError as press_segment, StoppedShortError.
     """
@@ -54,8 +55,6 @@ class FullLoad:
             _raise_if_stopped(march(system, self._linear, past, target, before.kink, recorder.record))
         self._state = past[-1]
         self.answer = _last_response(self._base)
-        charge = self._base.recorder.trace(model.press).film_charge_C[-1]
-        self.electrode_voltages_V: Floats = charge / self._base.recorder.capacitance_F
 
     def derivatives(self, variations: Mapping[str, Variation]) -> dict[str, FullResponse]:
         """Derivatives of the answer by each parameter. ValueError for one that changes the mesh or the unknowns."""
@@ -121,8 +120,9 @@ def _raise_if_stopped(failure: str | None) -> None:
 
 
 def _last_response(setup: Setup) -> FullResponse:
-    """Force and open-circuit voltage in the last recorded state."""
+    """Force and open-circuit voltages in the last recorded state."""
     recorder: Recorder = setup.recorder
     trace = recorder.trace(setup.model.press)
-    charge = float(trace.film_charge_C[-1].sum())
-    return FullResponse(float(trace.reaction_force_N[-1]), charge / float(recorder.capacitance_F.sum()))
+    charge, capacitance = trace.film_charge_C[-1], recorder.capacitance_F
+    together = float(charge.sum()) / float(capacitance.sum())
+    return FullResponse(float(trace.reaction_force_N[-1]), together, charge / capacitance)
