@@ -272,10 +272,9 @@ def test_a_message_that_is_too_long_closes_the_socket(studio):
 
 
 @for_each("name", ["/etc/passwd", "../secret.csv", "C:\\secret.csv", "/dev/zero"])
-@for_each("key", ["mesh", "press.waveform"])
-def test_a_design_of_somebody_else_reads_no_file_outside(studio, name, key):
-    shape = 'shape = "file"\n' if key != "mesh" else ""
-    text = f"[{key}]\n{shape}file = {json.dumps(name)}\n"
+@for_each("text", ["[mesh]\nfile = {}\n", '[press.waveform]\nshape = "file"\nfile = {}\n', "include = [{}]\n"])
+def test_a_design_of_somebody_else_reads_no_file_outside(studio, name, text):
+    text = text.format(json.dumps(name))
     found = spoken(studio, json.dumps({"do": "text", "text": text}), answers=["state"])
     while not found["state"]["design"]["mistakes"]:  # it is being checked
         found = spoken(studio, answers=["state"])

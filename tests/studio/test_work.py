@@ -30,6 +30,16 @@ def changed(text, *changes):
     return document.text
 
 
+def test_a_design_takes_the_material_that_it_includes(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("rubber.toml").write_text("[materials.own]\nyoungs_modulus_MPa = 0.345\ndensity_kg_m3 = 1000.0\nsource = \"test\"\nconfidence = \"low\"\n", "utf-8")
+    text = 'include = ["rubber.toml"]\n[segment.medium1]\nmaterial = "own"\n'
+    found = design.examine(text)
+    assert found["mistakes"] == []
+    assert found["values"]["materials"]["own"]["youngs_modulus_MPa"] == 0.345
+    assert design.config_of(text).layer_materials()["medium1"].youngs_modulus_MPa == 0.345
+
+
 @pytest.mark.press
 @for_each("name", MECHANISMS)
 def test_every_mechanism_can_be_switched_on_with_its_example(name):

@@ -1,7 +1,7 @@
 """What a design is before anything is solved: its values, mistakes, warnings, parts and cost."""
 
 from collections.abc import Mapping
-from pathlib import PurePath
+from pathlib import Path, PurePath
 from typing import Any
 
 from foundation.errors import InputError
@@ -18,7 +18,7 @@ from softdot.config.hashes import input_hash
 from softdot.config.loading import config_from
 from softdot.config.mistakes import mistakes
 from softdot.config.schema import Config
-from softdot.config.toml import parse_toml
+from softdot.config.toml import INCLUDE, parse_toml, with_included
 from softdot.json_files import plain
 from softdot.second_process import CAD_MODULES
 
@@ -29,7 +29,17 @@ DOTS = range(1, 7)
 
 def config_of(text: str) -> Config:
     """The configuration of a design. InputError."""
-    return _config(parse_toml(text, NAME))
+    return _config(_tables_of(text))
+
+
+def _tables_of(text: str) -> dict[str, Any]:
+    """The tables of a design and of the files that it includes. InputError."""
+    tables = parse_toml(text, NAME)
+    if INCLUDE not in tables:
+        return tables
+    for name in tables[INCLUDE] if isinstance(tables[INCLUDE], list) else []:
+        _refuse_outside(INCLUDE, str(name))
+    return with_included(tables, Path(NAME))
 
 
 def _config(tables: Mapping[str, Any]) -> Config:
@@ -50,11 +60,14 @@ def refuse_files_outside(config: Config) -> None:
     waveform = config.press.waveform
     own = {"mesh.file": config.mesh.file, "press.waveform.file": None if waveform is None else waveform.file}
     for key, name in own.items():
-        if name is None:
-            continue
-        path = PurePath(name.replace("\\", "/"))
-        if path.is_absolute() or ".." in path.parts or ":" in name:
-            raise InputError(f"{key} = '{name[:60]}': must be below the folder in which the studio was started")
+        if name is not None:
+            _refuse_outside(key, name)
+
+
+def _refuse_outside(key: str, name: str) -> None:
+    path = PurePath(name.replace("\\", "/"))
+    if path.is_absolute() or ".." in path.parts or ":" in name:
+        raise InputError(f"{key} = '{name[:60]}': must be below the folder in which the studio was started")
 
 
 def pressed_part(case: Case) -> Case:
@@ -153,7 +166,7 @@ def examine(text: str) -> dict[str, Any]:
     from softdot.studio.work.remedies import remedies
 
     try:
-        tables = parse_toml(text, NAME)
+        tables = _tables_of(text)
     except InputError as error:
         return {"values": None, "stated": None, "mistakes": [str(error)], "warnings": [], "remedies": [None]}
 
