@@ -85,7 +85,7 @@ class FamilySpace:
 
     def __init__(self, tables: Mapping[str, Any]) -> None:
         self.tables = dict(tables)
-        self.sweep: Sweep = sweep_of(tables)
+        self.sweep: Sweep = sweep_of(_without_points(tables))
         self.base = {name: table for name, table in tables.items() if name != "sweep"}
         if len(self.sweep.axes) > MOST_AXES:
             raise InputError(f"sweep.axes: a family has at most {MOST_AXES} numbers, these are {len(self.sweep.axes)}")
@@ -158,6 +158,18 @@ def load_family_space(path: Path, settings: Sequence[str] = ()) -> FamilySpace:
     """The space in SPACE.toml, as of softdot sweep. settings : 'dotted.key=value' after the file. InputError."""
     with naming_the_flag(settings):
         return FamilySpace(with_settings(read_toml(path), settings))
+
+
+def _without_points(tables: Mapping[str, Any]) -> dict[str, Any]:
+    """Tables whose [sweep] leaves the points to the program, as a family does, whatever a sweep would take."""
+    sweep = tables.get("sweep")
+    if not isinstance(sweep, Mapping) or not isinstance(sweep.get("axes"), list):
+        return dict(tables)
+    axes = [
+        {key: value for key, value in axis.items() if key != "n"} if isinstance(axis, Mapping) else axis
+        for axis in sweep["axes"]
+    ]
+    return {**tables, "sweep": {**sweep, "sampling": "sobol", "points": 1, "axes": axes}}
 
 
 def _range(number: int, axis: Axis) -> Range:

@@ -1,6 +1,7 @@
 """Families: the process on functions that are known, and what a family answers, refuses and keeps."""
 
 import copy
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from softdot.families.gradient_process import GradientProcess, Scales
 from softdot.families.presses import common_mesh
 from softdot.families.quantity import FamilyQuantity
 from softdot.families.report import write_page
-from softdot.families.space import FamilySpace
+from softdot.families.space import FamilySpace, load_family_space
 from softdot.progress import Untold
 from softdot.warm_up import TINY_CONFIG
 from tests.cases import for_each
@@ -164,6 +165,14 @@ def test_a_family_of_anything_but_numbers_of_a_design_is_refused(axis, told, tmp
         FamilySpace(space_of(axis))
     assert main(["family", str(tmp_path / "none.toml"), "-o", str(tmp_path / "out")]) == 2
     assert not (tmp_path / "out").exists()
+
+
+@for_each("file", sorted(Path("examples/families").glob("*.toml")))
+def test_a_space_needs_no_points_of_a_sweep(file):
+    space = load_family_space(file)
+    grid = {"sampling": "grid", "axes": [{**axis, "n": 3} for axis in space.tables["sweep"]["axes"]]}
+    asked = FamilySpace({**space.tables, "sweep": grid})
+    np.testing.assert_array_equal(space.drawn_places(4, 0), asked.drawn_places(4, 0))
 
 
 @pytest.mark.press
