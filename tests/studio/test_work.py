@@ -18,6 +18,7 @@ from softdot.studio.work import design, influences, press
 from softdot.studio.work.form import form
 from solve.mechanisms import MECHANISMS
 from tests.cases import for_each
+from tests.softdot.toml_text import toml_text
 from tests.studio.conftest import QUICK
 
 DEFAULT = files("softdot.config").joinpath("default.toml").read_text("utf-8")
@@ -32,7 +33,8 @@ def changed(text, *changes):
 
 def test_a_design_takes_the_material_that_it_includes(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    Path("rubber.toml").write_text("[materials.own]\nyoungs_modulus_MPa = 0.345\ndensity_kg_m3 = 1000.0\nsource = \"test\"\nconfidence = \"low\"\n", "utf-8")
+    material = {"youngs_modulus_MPa": 0.345, "density_kg_m3": 1000.0, "source": "test", "confidence": "low"}
+    Path("rubber.toml").write_text(toml_text({"materials": {"own": material}}), "utf-8")
     text = 'include = ["rubber.toml"]\n[segment.medium1]\nmaterial = "own"\n'
     found = design.examine(text)
     assert found["mistakes"] == []
