@@ -26,6 +26,9 @@ class Progress(Protocol):
     def step(self, number: int, count: int, text: str) -> None:
         """Announce a step of the running stage, such as a load step that has converged."""
 
+    def note(self, text: str) -> None:
+        """Tell what is already known while the work goes on."""
+
 
 class Logged:
     """Logs every stage and step; softdot.log says who reads them."""
@@ -46,6 +49,10 @@ class Logged:
         if told:
             LOG.info("%s %d of %d%s", self._name, number, count, f": {text}" if text else "")
 
+    def note(self, text: str) -> None:
+        """Log what is already known."""
+        LOG.info("%s", text)
+
 
 class Untold(Logged):
     """Reports nothing: used for single jobs where the number of finished ones is reported."""
@@ -55,6 +62,9 @@ class Untold(Logged):
 
     def step(self, number: int, count: int, text: str) -> None:
         """Ignore the step."""
+
+    def note(self, text: str) -> None:
+        """Ignore what is known."""
 
 
 class LaterSteps:
@@ -113,6 +123,11 @@ class _OnTerminal(Logged):
         super().step(number, count, text)
         if self._task is not None:
             self._bars.update(self._task, total=count, completed=number, description=f"{self._name:<10} {text}")
+
+    def note(self, text: str) -> None:
+        """Print what is already known above the bars."""
+        super().note(text)
+        self._bars.console.print(text)
 
     def finish(self) -> None:
         """Fill the running bar."""

@@ -14,7 +14,7 @@ from diagnose.fit.refit import Fitted
 from diagnose.fit.rig_discrepancy import VISIBLE_ERROR
 from diagnose.forward import Setting, Signals
 from diagnose.inference.equal_explanations import explanations_as_good
-from diagnose.inference.grades import Agreement, Evidence, Identified, KindOnly, MainPart, Unexplained, judged
+from diagnose.inference.grades import Evidence, Identified, KindOnly, MainPart, Unexplained, judged
 from diagnose.inference.hypotheses import Compared, Hypothesis, implausible
 from diagnose.inference.localisation import explanations, places, shares
 from diagnose.inference.reasons import named, warnings_of
@@ -30,8 +30,10 @@ FEWEST_PRESSES_TO_HALVE = 4
 """With fewer presses one half of them is a single one."""
 
 
-def agreeing_findings(model: ObservedModel, baseline: LinearisedSystem, found: Checked, verdict: Agreement) -> Findings:
-    """Findings without a mismatch: a good result."""
+def baseline_findings(
+    model: ObservedModel, baseline: LinearisedSystem, found: Checked, reasons: tuple[str, ...]
+) -> Findings:
+    """Findings of a baseline that agrees: nothing else is looked at."""
     return Findings(
         engine=model.engine.name,
         engine_accuracy=model.engine.accuracy,
@@ -41,7 +43,7 @@ def agreeing_findings(model: ObservedModel, baseline: LinearisedSystem, found: C
         screened={},
         mismatch=False,
         unexplained=False,
-        reasons=verdict.reasons,
+        reasons=reasons,
         models=(),
         best=None,
         groups=(),

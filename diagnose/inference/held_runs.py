@@ -1,6 +1,6 @@
 """Runs that only score: findings of all the others, with their error on these."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -23,16 +23,17 @@ from foundation.progress import Report
 
 
 def diagnose_and_score(
-    recording: Recording, engine: Engine, held: Sequence[int], seed: int, report: Report
-) -> Findings:
+    recording: Recording, engine: Engine, held: Sequence[int], seed: int, report: Report,
+    tell: Callable[[str], None] = lambda _: None,
+) -> Findings:  # fmt: skip
     """Findings of all runs but some, with held-out errors of those: numbers of runs of the recording.
 
     Mechanisms and what all runs share are those of the training runs. What floats in a held-out run is fitted to it,
-    without mechanisms and with them alike. InputError for a channel without noise.
+    without mechanisms and with them alike. tell : as of diagnose. InputError for a channel without noise.
     """
     trained = other_runs(recording, held)
     own = select_runs(recording, trained)
-    findings = diagnose(own, SomeRuns(engine, trained), seed, report)
+    findings = diagnose(own, SomeRuns(engine, trained), seed, report, tell)
     report("held-out runs", 0, 1)
     return _scored(findings, _model_of(own, engine, trained), _model_of(select_runs(recording, held), engine, held))
 

@@ -1,6 +1,6 @@
 """Where the baseline fails, and which component's sensitivities explain it."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
@@ -61,12 +61,19 @@ def shares(found: Screening, explained: dict[str, tuple[Floats, Bools]]) -> dict
 def places(
     samples: Samples, checked: Checked, found: Screening, explained: dict[str, tuple[Floats, Bools]]
 ) -> tuple[LocatedExcess, ...]:
-    """Cells with an excess that stands out, the largest first; the strongest one where only sums of cells do."""
+    """Cells with an excess that stands out, each with the component that explains most of it."""
+    return excess_places(samples, checked, _owners(samples, found, explained) if explained else {})
+
+
+def excess_places(samples: Samples, checked: Checked, owner: Mapping[int, str]) -> tuple[LocatedExcess, ...]:
+    """Cells with an excess that stands out, the largest first; the strongest one where only sums of cells do.
+
+    owner : cell -> component that explains it.
+    """
     cells = samples.bank.cells
     share = shares_of_excess(checked.energies, samples.bank.degrees)
     kept = [int(n) for n in np.argsort(-share) if checked.p_values[n] <= RATES.level]
     kept = kept or [int(np.argmax(checked.scores[: len(cells)]))]
-    owner = _owners(samples, found, explained) if explained else {}
     return tuple(
         LocatedExcess(
             samples.recording.runs[cells[n].labels["run"]].label,

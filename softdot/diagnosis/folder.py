@@ -116,9 +116,9 @@ def _fill(rig: Rig, options: Options, progress: Progress, folder: Path, executor
     progress.stage("compare")
     held = held_out_runs(rig.recording, options.hold_out)
     if held:
-        findings = diagnose_and_score(rig.recording, engine, held, seed, report)
+        findings = diagnose_and_score(rig.recording, engine, held, seed, report, progress.note)
     else:
-        findings = diagnose(rig.recording, engine, seed, report)
+        findings = diagnose(rig.recording, engine, seed, report, progress.note)
     named_on = select_runs(rig.recording, other_runs(rig.recording, held))
     progress.stage("check with the full model")
     proof = _full_model_runs(rig, engine, findings, report, options.full_model_s)

@@ -126,6 +126,7 @@ class TaskProgress:
 
     def __init__(self, tell: Tell) -> None:
         self._tell, self._name, self._start = tell, "", time.monotonic()
+        self._known = ""
 
     def stage(self, name: str) -> None:
         """A stage begins."""
@@ -137,7 +138,12 @@ class TaskProgress:
         spent = time.monotonic() - self._start
         left = spent * (count - number) / number if number else None
         told = {"stage": self._name, "done": number, "count": count, "left_s": left, "text": text}
+        told |= {"known": self._known} if self._known else {}
         self._tell({"progress": told})
+
+    def note(self, text: str) -> None:
+        """What is already known is told with every step that follows."""
+        self._known = f"{self._known} {text}".strip()
 
     def on_step(self, step: Step, number: int, count: int) -> None:
         """A load step has converged."""

@@ -39,8 +39,23 @@ def names(findings):
 
 
 @cache
+def leaking_and_told():
+    told = []
+    recording = small(5, Sensor(leak=1.0), runs=4)
+    return diagnose(recording, ToyEngine(recording, candidates=FEW), 1, silent, told.append), told
+
+
 def leaking():
-    return found(small(5, Sensor(leak=1.0), runs=4))
+    return leaking_and_told()[0]
+
+
+def test_a_first_look_comes_before_the_findings_and_only_where_there_is_a_mismatch():
+    _, (where, who) = leaking_and_told()
+    assert where.startswith("First look: Your simulation of the voltage is")
+    assert "leaks" in who.partition("%")[0]
+    told, recording = [], small(3, runs=2, rate=50.0, noise=0.01)
+    assert not diagnose(recording, ToyEngine(recording, candidates=FEW), 1, silent, told.append).mismatch
+    assert told == []
 
 
 def quiet(cases, first=0):
