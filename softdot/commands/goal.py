@@ -34,7 +34,8 @@ def short_text(summary: dict[str, Any], output: str) -> str:
     lines = [f"{key} = {value:.5g}" for key, value in summary["design"].items()]
     for name in (goal["enough"], goal["least"]):
         low, middle, high = summary[name].values()
-        lines.append(f"{name}: {middle:.4g}, nine batches in ten {low:.4g} to {high:.4g}")
+        batches = f", nine batches in ten {low:.4g} to {high:.4g}" if goal["batch"] else ""
+        lines.append(f"{name}: {middle:.4g}{batches}")
     lines.append(
         f"{goal['enough']} >= {goal['target']:g} with a probability of {summary['probability']:.3g}, "
         f"{summary['probability_at_the_low_end_of_the_interval']:.3g} at the low end of the family's interval"
