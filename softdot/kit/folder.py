@@ -170,7 +170,7 @@ def _budget_outcome(config: Config, on_step: Callable[[int, int, str], None], ex
     if config.array is None:
         return alone
     try:
-        beside = crosstalk_budget(config, on_step, executor)
+        beside = crosstalk_budget(config, lambda n, of, text: on_step(n, of, f"crosstalk, {text}"), executor)
     except InputError as error:  # such as a medium with memory, whose path matters
         return replace(alone, note=f"There is no budget of the crosstalk: {error}.")
     except (LinearSolveError, MeshingError, StoppedShortError) as error:
