@@ -23,9 +23,10 @@ from solve.model import Model, Press
 from solve.readout.course import PressCourse, common_readout_V, course
 from solve.result import PressResult, Trace
 from solve.setup import Setup, discretise, set_up
-from solve.solution.linear import LinearSolver
+from solve.solution.linear import LinearSolveError, LinearSolver
 from solve.solution.march import march, rest_state
 from solve.system import Load, State
+from solve.terms.solid import InvertedElementError
 
 
 @dataclass(frozen=True)
@@ -72,10 +73,18 @@ class VariedSystem:
         return self.state.x - other.state.x
 
     def residual(self, x: Floats, base: State) -> Floats:
-        """Residual (count,) of the base's unknowns under this parameter and this memory."""
+        """Residual (count,) of the base's unknowns under this parameter and this memory. LinearSolveError where an
+        element is so nearly flat that it turns over a little beside them.
+        """
         assert self.state is not None
         trial = self.setup.system.trial(x, self.load(base.load), base.time, self.state, base.is_damped)
-        return self.setup.system.evaluate(trial, self.state.histories).residual
+        try:
+            return self.setup.system.evaluate(trial, self.state.histories).residual
+        except InvertedElementError as error:
+            raise LinearSolveError(
+                f"the press cannot be differentiated: {error} a little beside the solved state; smaller elements or a "
+                "smaller press help"
+            ) from None
 
     def history(self, base: PressCourse, press: Press) -> Slopes:
         """Histories at this parameter, not yet derivatives; the read-out on the times of the base's course.

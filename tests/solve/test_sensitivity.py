@@ -1,6 +1,7 @@
 """Sensitivities of a whole press against differences of whole presses."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,7 +13,10 @@ from mesh.build import build
 from mesh.options import MeshOptions
 from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model, Press
-from solve.solution.sensitivity import Variation, press_with_sensitivities
+from solve.solution.linear import LinearSolveError
+from solve.solution.sensitivity import Variation, VariedSystem, press_with_sensitivities
+from solve.system import Load
+from solve.terms.solid import InvertedElementError
 from solve.waveform import Waveform
 from tests.solve.segments import materials, segment
 
@@ -118,3 +122,18 @@ def whole_press(changed, base, tet_mesh):
 
     moved = morphed_mesh(tet_mesh, base.segment, changed.segment)
     return press_with_sensitivities(changed, {}, moved)[0].trace
+
+
+def test_an_element_that_turns_over_beside_the_state_is_no_slope():
+    class Flat:
+        def trial(self, *_):
+            return None
+
+        def evaluate(self, *_):
+            raise InvertedElementError("medium2", np.array([0]))
+
+    side = VariedSystem(SimpleNamespace(system=Flat()), 1.0)
+    side.state = SimpleNamespace(histories=())
+    base = SimpleNamespace(load=Load((0.0, 0.0), 1.0), time=0.0, is_damped=False)
+    with pytest.raises(LinearSolveError, match="cannot be differentiated: an element of medium2 is turned inside out"):
+        side.residual(np.zeros(3), base)
