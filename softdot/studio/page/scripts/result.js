@@ -39,23 +39,27 @@ function card(numbers, quality, [key, title, unit, percent]) {
   return { title, value: quantity(value, unit, error), words, more };
 }
 
-// Of a design that is not pressed yet, from the derivatives of one that is.
-function estimated({ value, error }, [, title, unit]) {
+// Of a design that is not pressed yet, from the derivatives of one that is, or by a family.
+function estimated({ value, error }, [, title, unit], by) {
   return {
     title,
     value: quantity(value, unit, error),
     words: "estimate",
-    more: "to first order from a press before",
+    more: by === "family" ? "by the family, with its interval" : "to first order from a press before",
     fresh: true,
   };
 }
+
+// What a press gives at full load, as goals and estimates name it.
+export const atFullLoad = (numbers) =>
+  Object.fromEntries(QUANTITIES.map((one) => [one[ESTIMATED], last(numbers[one[0]])]));
 
 // The last press, and the estimate for the present design where there is one.
 export function show({ numbers, quality }, estimate) {
   const readout = last(numbers.readout_voltage_V),
     film = numbers.film || {};
   const cards = QUANTITIES.map((one) =>
-    estimate ? estimated(estimate[one[ESTIMATED]], one) : card(numbers, quality, one),
+    estimate ? estimated(estimate[one[ESTIMATED]], one, estimate.by) : card(numbers, quality, one),
   );
   if (readout !== null) cards.push({ title: "At the amplifier", value: quantity(readout, "V"), words: "" });
   const stress = quantity(film.max_principal_stress_MPa, "MPa"),
