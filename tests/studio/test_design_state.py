@@ -184,8 +184,8 @@ class Studied(RuleBasedStateMachine):
     def the_family_answers(self, knows):
         text = self.family_asked.pop()
         thickness = parsed(text)[0]
-        of_all = dict.fromkeys(("force_N", "charge_pC"), {"value": thickness, "error": 0.1})
-        found = {**of_all, "voltage_V": {"value": thickness**2, "error": 0.1}, "by": "family"}
+        values = {"force_N": thickness, "charge_pC": thickness, "voltage_V": thickness**2}
+        found = {name: {"value": value, "error": 0.1} for name, value in values.items()} | {"by": "family"}
         self.state.answered_by_family(text, found if knows else None)
 
     @precondition(lambda self: (self.state.check or {}).get("press_hash"))

@@ -77,7 +77,7 @@ def studio_with(report) -> Iterator[tuple[str, str]]:
         session = SimpleNamespace(files={"token/report.html": report})
         server = HTTPServer(application(SimpleNamespace(guard=guard, sessions={"tab": session})))
         server.add_sockets(sockets)
-        told.extend([loop, f"http://127.0.0.1:PORT", guard.key])
+        told.extend([loop, f"http://127.0.0.1:{port}", guard.key])
         ready.set()
         loop.start()
         server.stop()

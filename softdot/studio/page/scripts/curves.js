@@ -322,7 +322,8 @@ export class Curves {
   }
 
   show(designs, runs) {
-    Object.assign(this, { designs, runs });
+    this.designs = designs;
+    this.runs = runs;
     this.draw();
   }
 

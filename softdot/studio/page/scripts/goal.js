@@ -12,7 +12,10 @@ const sizes = (found, key) => quantity(found, given(key).unit);
 export class GoalPanel {
   // form: the question; place: the answer; ask(message): tells the program.
   constructor(form, place, ask) {
-    Object.assign(this, { form, place, ask, boxes: {} });
+    this.form = form;
+    this.place = place;
+    this.ask = ask;
+    this.boxes = {};
     this.find = (selector) => form.querySelector(selector);
     for (const [name, chosen] of [
       ["enough", "voltage_V"],

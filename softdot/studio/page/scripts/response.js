@@ -78,7 +78,13 @@ const LINES = {
 export class ResponsePanel {
   // form: where a number is chosen; place: where the answer stands; ask(message): tells the program.
   constructor(form, place, ask) {
-    Object.assign(this, { form, place, ask, numbers: [], found: null, what: GIVEN[0].key, isChosen: false });
+    this.form = form;
+    this.place = place;
+    this.ask = ask;
+    this.numbers = [];
+    this.found = null;
+    this.what = GIVEN[0].key;
+    this.isChosen = false;
     this.find = (selector) => form.querySelector(selector);
     this.find(".key").addEventListener("change", () => {
       this.isChosen = true;
