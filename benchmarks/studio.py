@@ -80,7 +80,7 @@ def measured(address: str, process: psutil.Process, started: float) -> dict[str,
     """All figures of one run."""
     with sync_playwright() as engine:
         browser = engine.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
-        page = browser.new_page(viewport={"width": 1366, "height": 768})
+        page = browser.new_context(viewport={"width": 1366, "height": 768}).new_page()
         page.goto("about:blank")
         begin = time.perf_counter()
         page.goto(address)

@@ -83,20 +83,24 @@ export class GoalPanel {
   }
 
   reached({ changes, by, enough, least, target }, estimate, pressed) {
-    const words = changes.map(([path, value]) => {
-      const known = this.boxes[path.reduce((key, part) => `${key}${key ? "." : ""}${part}`, "")];
-      return `${known ? known.number.name : path[path.length - 1]} ${short(value)}${known ? ` ${known.number.unit}` : ""}`;
-    });
+    const words = changes.map(([path, value]) => this.told(path, value));
     const moved = words.length ? `Moved: ${words.join(", ")}. ` : "Nothing had to be moved. ";
     if (pressed) {
-      const enoughNow = Math.abs(pressed[enough]) >= target ? "the goal is met" : "the goal is missed";
-      return `${moved}Its press gives ${sizes(pressed[enough], enough)} with ${sizes(pressed[least], least)}: ${enoughNow}.`;
+      const found = `${sizes(pressed[enough], enough)} with ${sizes(pressed[least], least)}`;
+      return `${moved}Its press gives ${found}: the goal is ${Math.abs(pressed[enough]) >= target ? "met" : "missed"}.`;
     }
     const of = by === "family" ? "The family answers" : "The estimate gives";
-    const told = (key) => quantity(estimate[key].value, given(key).unit, estimate[key].error);
+    const one = (key) => quantity(estimate[key].value, given(key).unit, estimate[key].error);
     return estimate
-      ? `${moved}${of} ${told(enough)} with ${told(least)}; its press follows.`
+      ? `${moved}${of} ${one(enough)} with ${one(least)}; its press follows.`
       : `${moved}Its press follows.`;
+  }
+
+  // A number as the form names it, at its value.
+  told(path, value) {
+    const key = JSON.stringify(path),
+      known = Object.values(this.boxes).find(({ number }) => JSON.stringify(number.path) === key);
+    return known ? `${known.number.name} ${short(value)} ${known.number.unit}` : `${path[path.length - 1]} ${short(value)}`;
   }
 
   buttons(found, isCurrent, pressed) {

@@ -31,12 +31,15 @@ const tab = {
 };
 const store = new Store(sessionStorage);
 const viewer = new View(find("#view3d"));
-const curves = new Curves(find("#curves"), (text) => { find("#heard").textContent = text; });
+const aloud = (text) => {
+  find("#heard").textContent = text;
+};
+const curves = new Curves(find("#curves"), aloud);
 const designs = new Designs(ask, (list, runs) => curves.show(list, runs));
 const editor = new Editor(find("#text"), find("#toml .lines"));
 const start = new StartPage(find("#start"), ask);
 const tasks = new next.Tasks(ask, address);
-const response = new ResponsePanel(find("#along"), find("#response"), ask);
+const response = new ResponsePanel(find("#along"), find("#response"), ask, aloud);
 const goal = new GoalPanel(find("#goal"), find("#goal-found"), ask);
 const RESULTS = { influences: "Each number 10 % larger", tolerances: "Each number at the end of its tolerance" };
 // Panels with a mark of their own where they are of a design before.

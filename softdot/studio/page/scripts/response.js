@@ -2,6 +2,7 @@
 import { element, node, short, ticks } from "./dom.js";
 import { numberOf, quantity } from "./numbers.js";
 import { GIVEN, given } from "./quantities.js";
+import { Heard } from "./sound.js";
 
 const WIDTH = 330,
   HEIGHT = 220,
@@ -51,18 +52,18 @@ function point(chart, X, Y, one, { key, unit }) {
   return chart.append(dot);
 }
 
-// found: of the program; now: value of the number in the present design; what: quantity that is drawn.
-export function drawn({ points, line, range, name, unit }, now, what) {
-  const chart = node("svg", { class: "chart", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img" });
+const titled = ({ name, unit }) => (unit ? `${name} (${unit})` : name);
+
+// What the program has found of a number of the form; what: quantity that is drawn.
+function drawn({ points, line, range }, number, what) {
+  const chart = node("svg", { class: "chart", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, "aria-hidden": "true" });
   const good = points.filter((one) => !one.said),
     ends = line.flatMap((one) => [1, -1].map((sign) => one[what.key].value + sign * one[what.key].error));
-  const title = `${what.name} (${what.unit})`,
-    said = good.map((one) => `${short(one.value)}: ${quantity(one[what.key], what.unit)}`).join(", ");
-  chart.append(node("title", {}, `${title} against ${name}: ${said || "no press yet"}`));
   const heights = [...good.map((one) => one[what.key]), ...ends];
   const X = scale(range, LEFT, RIGHT, 0.04),
     Y = scale(heights.length ? heights : [0, 1], BOTTOM, TOP, 0.08);
-  axes(chart, X, Y, unit ? `${name} (${unit})` : name, title);
+  axes(chart, X, Y, titled(number), `${what.name} (${what.unit})`);
+  const { now } = number;
   if (now >= range[0] && now <= range[1])
     chart.append(node("line", { class: "now", x1: X.at(now), x2: X.at(now), y1: TOP, y2: BOTTOM }));
   if (line.length > 1) estimated(chart, X, Y, line, what.key);
@@ -76,8 +77,8 @@ const LINES = {
 };
 
 export class ResponsePanel {
-  // form: where a number is chosen; place: where the answer stands; ask(message): tells the program.
-  constructor(form, place, ask) {
+  // form: where a number is chosen; place: where the answer stands; ask(message): tells the program; say(text): aloud.
+  constructor(form, place, ask, say) {
     this.form = form;
     this.place = place;
     this.ask = ask;
@@ -94,6 +95,29 @@ export class ResponsePanel {
       const chosen = this.numbers.find((one) => one.key === this.find(".key").value);
       if (chosen) this.start(chosen.path, numberOf(this.find(".low").value), numberOf(this.find(".high").value));
     });
+    this.build(say);
+  }
+
+  // What stays while points come: the choice, the chart with its keys and sound, words, table.
+  build(say) {
+    this.chart = element("div", { class: "chart", tabindex: 0, role: "img" });
+    this.words = element("div", {});
+    const region = { class: "wide", tabindex: 0, role: "region", "aria-label": "Presses along one number" };
+    this.rows = element("div", region);
+    const select = element("select", {}, ...GIVEN.map(({ key, name }) => element("option", { value: key }, name)));
+    select.addEventListener("change", () => {
+      this.what = select.value;
+      this.draw();
+    });
+    const about = { type: "button", "aria-label": "Hear it", title: "Pitch is its height; arrow keys go along it" };
+    this.parts = [
+      element("div", { class: "row" }, element("label", {}, "Show ", select), element("button", about, "♪")),
+      element("div", {}, this.chart),
+      this.words,
+      element("details", {}, element("summary", {}, "As a table"), this.rows),
+    ];
+    this.heard = new Heard(this.chart, () => this.series(), { title: "", x: "", y: "" }, say);
+    this.parts[0].querySelector("button").addEventListener("click", () => this.heard.whole());
   }
 
   start(key, low, high) {
@@ -108,14 +132,11 @@ export class ResponsePanel {
   // Numbers of the form; before one is chosen, the list follows the hand.
   offer(numbers) {
     const select = this.find(".key"),
-      before = select.value;
+      before = select.value,
+      keys = (all) => all.join();
     this.numbers = numbers;
-    if ([...select.options].map((one) => one.value).join() !== numbers.map((one) => one.key).join())
-      select.replaceChildren(
-        ...numbers.map(({ key, name, unit }) =>
-          element("option", { value: key }, unit ? `${name} (${unit})` : name),
-        ),
-      );
+    if (keys([...select.options].map((one) => one.value)) !== keys(numbers.map((one) => one.key)))
+      select.replaceChildren(...numbers.map((one) => element("option", { value: one.key }, titled(one))));
     if (numbers.some((one) => one.key === before)) select.value = before;
     if (this.found) this.draw();
   }
@@ -125,49 +146,52 @@ export class ResponsePanel {
   }
 
   show(found) {
+    if (!this.found) this.place.append(...this.parts);
     this.found = found;
     this.draw();
   }
 
+  // The number that was followed, as the form names it.
+  get number() {
+    const { key } = this.found;
+    return this.numbers.find((one) => one.key === key) || { key, name: key, unit: "", now: NaN };
+  }
+
+  // What is heard: the presses, then the estimate.
+  series() {
+    if (!this.found) return [];
+    const good = this.found.points.filter((one) => !one.said),
+      { line } = this.found,
+      values = (all) => all.map((one) => one.value);
+    const all = [
+      { name: "full presses", x: values(good), y: good.map((one) => one[this.what]) },
+      { name: "estimate", x: values(line), y: line.map((one) => one[this.what].value) },
+    ];
+    return all.filter((one) => one.x.length);
+  }
+
   draw() {
-    const { found } = this,
-      about = this.numbers.find((one) => one.key === found.key) || { name: found.key, unit: "", now: NaN };
+    const { found, number } = this,
+      what = given(this.what);
+    this.chart.replaceChildren(drawn(found, number, what));
+    const axes = { title: what.name, x: titled(number), y: `${what.name} (${what.unit})` };
+    this.heard.axes = axes;
+    this.chart.setAttribute("aria-label", `${axes.y} against ${axes.x}; arrow keys go along it, Enter plays it`);
     const missing = found.count - found.points.length,
       more = missing ? ` ${missing} of ${found.count} are not pressed.` : "";
     const hollow = found.points.some((one) => !one.said && one.warnings.length) ? " Hollow: with a warning." : "";
-    const failed = found.points.filter((one) => one.said);
-    this.place.replaceChildren(
-      this.choice(),
-      drawn({ ...found, ...about }, about.now, given(this.what)),
-      element(
-        "p",
-        { class: "soft" },
-        `Points are full presses, on the mesh of the design.${hollow}${more} `,
-        found.line.length > 1 ? LINES[found.by] : "Beside these values nothing is estimated.",
-      ),
-      ...failed.map((one) => element("p", {}, `${short(one.value)} ${about.unit}: ${one.said}`)),
-      this.table(about),
+    const words = found.line.length > 1 ? LINES[found.by] : "Beside these values nothing is estimated.";
+    this.words.replaceChildren(
+      element("p", { class: "soft" }, `Points are full presses, on the mesh of the design.${hollow}${more} ${words}`),
+      ...found.points
+        .filter((one) => one.said)
+        .map((one) => element("p", {}, `${short(one.value)} ${number.unit}: ${one.said}`)),
     );
+    this.rows.replaceChildren(this.table(titled(number)));
   }
 
-  choice() {
-    const select = element(
-      "select",
-      {
-        onchange: () => {
-          this.what = select.value;
-          this.draw();
-          this.place.querySelector("select").focus();
-        },
-      },
-      ...GIVEN.map(({ key, name }) => element("option", { value: key }, name)),
-    );
-    select.value = this.what;
-    return element("label", {}, "Show ", select);
-  }
-
-  table({ name, unit }) {
-    const head = [unit ? `${name} (${unit})` : name, ...GIVEN.map((one) => `${one.name} (${one.unit})`), ""];
+  table(name) {
+    const head = [name, ...GIVEN.map((one) => `${one.name} (${one.unit})`), ""];
     const row = (one) =>
       element(
         "tr",
@@ -177,19 +201,10 @@ export class ResponsePanel {
         element("td", {}, this.use(one)),
       );
     return element(
-      "details",
-      { open: Boolean(this.isOpen), ontoggle: (event) => { this.isOpen = event.target.open; } },
-      element("summary", {}, "As a table"),
-      element(
-        "div",
-        { class: "wide", tabindex: 0, role: "region", "aria-label": "Presses along one number" },
-        element(
-          "table",
-          {},
-          element("thead", {}, element("tr", {}, ...head.map((one) => element("th", { scope: "col" }, one)))),
-          element("tbody", {}, ...this.found.points.map(row)),
-        ),
-      ),
+      "table",
+      {},
+      element("thead", {}, element("tr", {}, ...head.map((one) => element("th", { scope: "col" }, one)))),
+      element("tbody", {}, ...this.found.points.map(row)),
     );
   }
 
