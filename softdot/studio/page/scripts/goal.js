@@ -100,7 +100,8 @@ export class GoalPanel {
   told(path, value) {
     const key = JSON.stringify(path),
       known = Object.values(this.boxes).find(({ number }) => JSON.stringify(number.path) === key);
-    return known ? `${known.number.name} ${short(value)} ${known.number.unit}` : `${path[path.length - 1]} ${short(value)}`;
+    const { name, unit } = known ? known.number : { name: path[path.length - 1], unit: "" };
+    return `${name} ${short(value)} ${unit}`.trim();
   }
 
   buttons(found, isCurrent, pressed) {
