@@ -41,6 +41,7 @@ def test_a_number_is_followed_and_marked_once_another_changes(studio, open_tab, 
     assert page.locator("#response .before").count() == 0  # its own number
     slide(tab, DEPTH, -2)
     tab.says("#response .before", "Of a design before")
+    tab.pressed()
     page.locator("#response .before button").click()
     page.locator("#response-tasks button", has_text="Cancel").click()
     tab.says("#response-tasks .state", "cancelled")

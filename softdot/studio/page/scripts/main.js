@@ -43,7 +43,7 @@ const response = new ResponsePanel(find("#along"), find("#response"), ask, aloud
 const goal = new GoalPanel(find("#goal"), find("#goal-found"), ask);
 const RESULTS = { influences: "Each number 10 % larger", tolerances: "Each number at the end of its tolerance" };
 // Panels with a mark of their own where they are of a design before.
-const PANELS = { response: "#response", goal: "#goal-found" };
+const PANELS = ["response", "goal"];
 const MARKED = { numbers: "#numbers", curves: "#curves", circuit: "#circuit .answer", array: "#array figure" };
 
 // Files have addresses of their own, which hold no key; a report is shown in a frame that leads nowhere else.
@@ -198,7 +198,7 @@ function paintTasks({ tasks: known, artefacts }) {
       if (is === "running") tasks.progress({ task, ...progress });
       else tasks.ended({ task, said: is === "done" ? `done in ${duration(took)}` : said, bad: is === "failed" });
     }
-    tasks.item(task).querySelector(".old").hidden = name in PANELS || !artefacts[name] || artefacts[name].current;
+    tasks.item(task).querySelector(".old").hidden = PANELS.includes(name) || !artefacts[name] || artefacts[name].current;
   }
 }
 
