@@ -32,7 +32,8 @@ class DesignGoal:
 
 def design_goal(values: Mapping[str, Any], asked: Mapping[str, Any]) -> DesignGoal:
     """What a tab has asked for, {"enough", "target", "least", "numbers": [[path, low, high], ...]}. InputError."""
-    enough, least, target = asked.get("enough"), asked.get("least"), asked.get("target")
+    enough, least = asked.get("enough"), asked.get("least")
+    target: Any = asked.get("target")
     if enough not in QUANTITIES or least not in QUANTITIES or enough == least:
         raise InputError(f"a goal needs two of {', '.join(QUANTITIES)}")
     if type(target) not in (int, float) or not math.isfinite(target) or target <= 0:

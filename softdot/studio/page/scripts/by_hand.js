@@ -1,5 +1,5 @@
 // What is asked of the program by hand: the text of a design, files, buttons, keys.
-import { element, find } from "./dom.js";
+import { element, find, findAll } from "./dom.js";
 import { filter, tidy } from "./form_search.js";
 
 // The design as text: a change counts when the hand pauses.
@@ -52,7 +52,8 @@ function buttons({ ask, start }) {
   document.addEventListener("input", (event) => typed.add(event.target), true);
   document.addEventListener("change", (event) => typed.delete(event.target), true);
   document.addEventListener("keydown", (event) => {
-    if (!(event.ctrlKey || event.metaKey) || typed.has(event.target) || event.target.matches("textarea")) return;
+    const at = /** @type {Element} */ (event.target);
+    if (!(event.ctrlKey || event.metaKey) || typed.has(at) || at.matches("textarea")) return;
     const name =
       event.key.toLowerCase() === "z" ? (event.shiftKey ? "redo" : "undo") : event.key === "y" ? "redo" : null;
     if (name) {
@@ -64,7 +65,7 @@ function buttons({ ask, start }) {
   find("#press .again").addEventListener("click", () => {
     ask({ do: "press" });
   });
-  for (const one of document.querySelectorAll("[data-start]"))
+  for (const one of findAll("[data-start]"))
     one.addEventListener("click", () => ask({ do: "start", task: one.dataset.start }));
   find("#plate button").addEventListener("click", () =>
     ask({

@@ -22,6 +22,9 @@ export function element(tag, attributes = {}, ...children) {
 /** @type {(selector: string) => any} */
 export const find = (selector) => document.querySelector(selector);
 
+/** @type {(selector: string) => any[]} */
+export const findAll = (selector) => [...document.querySelectorAll(selector)];
+
 export function short(value) {
   if (value === null || value === undefined) return "–";
   if (typeof value !== "number") return typeof value === "string" ? value : JSON.stringify(value);

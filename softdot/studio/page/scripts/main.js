@@ -108,13 +108,17 @@ function paintForm({ design }) {
   }
   tab.form.update(design.values, design.stated, design.mistakes, design.remedies);
   tab.circuit.update(design.values, design.stated, design.mistakes, design.remedies);
-  if (tab.isBuilt) return tidy(find("#form"));
+  if (!tab.isBuilt) buildForm();
+  else tidy(find("#form"));
+}
+
+function buildForm() {
   tab.isBuilt = true;
   find("#form").replaceChildren(...tab.form.whole());
   filter(find("#form"), find("#find").value); // typed before there was a form
   find("#circuit .fields").replaceChildren(tab.circuit.table(store.form.schema.properties.readout, ["readout"]));
   find("#circuit .fields details").open = true;
-  return hints(find("#form"), find("#hint"));
+  hints(find("#form"), find("#hint"));
 }
 
 function paintDesign({ design }) {
@@ -155,6 +159,11 @@ function paintContents() {
   if (isNew("circuit", circuit) && circuit) result.circuit(circuit.found);
   if (isNew("array", cells) && cells) array.show(cells.pressed);
   if (isNew("kept", kept) && kept) designs.hear(kept);
+  paintInfluences();
+  paintRecording(read, verdict);
+}
+
+function paintInfluences() {
   for (const [name, title] of Object.entries(RESULTS)) {
     const found = store.contents[name];
     if (isNew(name, found) && found) {
@@ -162,6 +171,9 @@ function paintContents() {
       tab.influences = name;
     }
   }
+}
+
+function paintRecording(read, verdict) {
   if (isNew("recording", read)) {
     designs.record(read && read.result.of !== "a coupon" ? read.result.runs : []); // a strip is not pressed
     if (read && store.form) recording.show(read.result, ask, store.form.units);
@@ -198,7 +210,8 @@ function paintTasks({ tasks: known, artefacts }) {
       if (is === "running") tasks.progress({ task, ...progress });
       else tasks.ended({ task, said: is === "done" ? `done in ${duration(took)}` : said, bad: is === "failed" });
     }
-    tasks.item(task).querySelector(".old").hidden = PANELS.includes(name) || !artefacts[name] || artefacts[name].current;
+    const isOld = Boolean(artefacts[name]) && !artefacts[name].current;
+    tasks.item(task).querySelector(".old").hidden = PANELS.includes(name) || !isOld;
   }
 }
 

@@ -174,9 +174,9 @@ export class ResponsePanel {
     const { found, number } = this,
       what = given(this.what);
     this.chart.replaceChildren(drawn(found, number, what));
-    const axes = { title: what.name, x: titled(number), y: `${what.name} (${what.unit})` };
-    this.heard.axes = axes;
-    this.chart.setAttribute("aria-label", `${axes.y} against ${axes.x}; arrow keys go along it, Enter plays it`);
+    const [x, y] = [titled(number), `${what.name} (${what.unit})`];
+    this.heard.axes = { title: what.name, x, y };
+    this.chart.setAttribute("aria-label", `${y} against ${x}; arrow keys go along it, Enter plays it`);
     const missing = found.count - found.points.length,
       more = missing ? ` ${missing} of ${found.count} are not pressed.` : "";
     const hollow = found.points.some((one) => !one.said && one.warnings.length) ? " Hollow: with a warning." : "";

@@ -248,7 +248,8 @@ export class View {
   play() {
     const button = this.find(".play");
     if (this.ticking) {
-      this.ticking = clearInterval(this.ticking);
+      clearInterval(this.ticking);
+      this.ticking = null;
       button.textContent = "Play";
       return;
     }
