@@ -66,7 +66,7 @@ export class GoalPanel {
   // pressed: what is known of it by now.
   show(found, isCurrent, estimate, pressed) {
     if (!found) return this.place.replaceChildren();
-    const goal = `${quantity(found.target, given(found.enough).unit)} with the least ${given(found.least).name}`;
+    const goal = `${short(found.target)} ${given(found.enough).unit} with the least ${given(found.least).name}`;
     const said = element("p", {}, element("strong", {}, `Goal: ${goal}. `));
     if (!isCurrent) said.append("The design has been changed since.");
     else if (!found.reached) said.append(this.beyond(found));

@@ -7,7 +7,8 @@ export const GIVEN = [
 export const given = (key) => GIVEN.find((one) => one.key === key);
 
 // Tables whose numbers change no press, or only how finely it is solved.
-const ASIDE = ["readout", "fabrication", "mesh", "seed"];
+const ASIDE = ["readout", "fabrication", "mesh", "seed"],
+  STEPS = "press.load_steps";
 
 // The numbers of the form that act and are shown, as their sliders tell them.
 export function numbersOf(form) {
@@ -16,7 +17,7 @@ export function numbersOf(form) {
   return [...form.querySelectorAll("[data-slider]")].filter(shown).flatMap(({ dataset }) => {
     const path = JSON.parse(dataset.path);
     const [now, low, high] = [dataset.now, dataset.low, dataset.high].map(Number);
-    return ASIDE.includes(path[0]) || dataset.now === undefined
+    return ASIDE.includes(path[0]) || dataset.slider === STEPS || dataset.now === undefined
       ? []
       : [{ key: dataset.slider, path, name: dataset.name, unit: dataset.unit, now, low, high }];
   });
