@@ -6,21 +6,26 @@ to the last pixel; and how long it takes to pack it alone. Views come one after 
 processor time of this process (the server), and of the processes of the browser, by what they are for.
 """
 
+import asyncio
 import json
 import shutil
+import subprocess
 import sys
+import tempfile
 import threading
 import time
 from contextlib import suppress
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import psutil
-from playwright.sync_api import sync_playwright
+from tornado.httpclient import AsyncHTTPClient
 from tornado.httpserver import HTTPServer
 from tornado.ioloop import IOLoop
 from tornado.netutil import bind_sockets
+from tornado.websocket import websocket_connect
 
 from benchmarks.studio import FLAGS
 from export.viewer_data import colour_map_bytes
@@ -34,6 +39,8 @@ from softdot.studio.large_messages import large_messages
 from softdot.studio.work.form import form
 
 BOXES, STEPS, LAYERS, TIMES = 3, 7, 2, 3
+LOADED_S = 3.0
+"""After which the page has loaded and drawn what it begins with."""
 IN_CUBE = np.array([[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]])
 """Tetrahedra of a cube by its corners, whose bits are x, y and z."""
 WATCH = """() => {
@@ -156,27 +163,80 @@ def serve(tab: FixedTab, ready: threading.Event, told: dict[str, Any]) -> None:
     told["loop"].start()
 
 
+class Watched:
+    """A page of Chromium by its DevTools protocol alone: with a library beside it that records what comes over the net,
+    as playwright does, the browser would copy every message twice.
+    """
+
+    def __init__(self, folder: str, flags: list[str]) -> None:
+        command = [
+            str(shutil.which("chromium")),
+            "--headless=new",
+            "--remote-debugging-port=0",
+            "--window-size=1366,768",
+        ]
+        command += [f"--user-data-dir={folder}", "--no-first-run", *flags, "about:blank"]
+        self.process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self._port_file, self._count, self._line = Path(folder) / "DevToolsActivePort", 0, None
+
+    async def open(self) -> None:
+        """Connect to its page."""
+        while not self._port_file.exists():
+            await asyncio.sleep(0.1)
+        await asyncio.sleep(1.0)
+        port = self._port_file.read_text("ascii").split()[0]
+        found = await AsyncHTTPClient().fetch(f"http://127.0.0.1:{port}/json")
+        address = next(one["webSocketDebuggerUrl"] for one in json.loads(found.body) if one["type"] == "page")
+        self._line = await websocket_connect(address)
+
+    async def ask(self, method: str, **what: Any) -> dict[str, Any]:
+        """The answer to one command."""
+        assert self._line is not None
+        self._count += 1
+        await self._line.write_message(json.dumps({"id": self._count, "method": method, "params": what}))
+        while True:
+            told = json.loads(await self._line.read_message() or "{}")
+            if told.get("id") == self._count:
+                return dict(told["result"])
+
+    async def value(self, expression: str) -> Any:
+        """Of an expression in the page."""
+        found = await self.ask("Runtime.evaluate", expression=expression, returnByValue=True)
+        return found["result"].get("value")
+
+
+async def watched(page: Watched, tab: FixedTab, told: dict[str, Any]) -> tuple[list[list[float]], dict[str, float]]:
+    """Times of TIMES views, [received, taken over, drawn], and the work of each."""
+    await page.open()
+    await page.ask("Page.enable")
+    await page.ask("Page.addScriptToEvaluateOnNewDocument", source=f"({WATCH})()")
+    await page.ask("Page.navigate", url=told["address"])
+    while tab.line is None:
+        await asyncio.sleep(0.1)
+    await asyncio.sleep(LOADED_S)
+    before = work_ms()
+    for number in range(TIMES):
+        told["loop"].add_callback(tab.show)
+        while await page.value("window.times.length") <= number:
+            await asyncio.sleep(0.2)
+        await asyncio.sleep(0.5)
+    work = {kind: round((spent - before.get(kind, 0.0)) / TIMES) for kind, spent in work_ms().items()}
+    return await page.value("window.times"), work
+
+
 def main() -> None:
     """Show the view TIMES times and print what each took."""
     asked = int(sys.argv[1]) if len(sys.argv) > 1 else 200_000
     tab, ready, told = FixedTab(view(asked)), threading.Event(), {}
     threading.Thread(target=serve, args=(tab, ready, told), daemon=True).start()
     ready.wait(20)
-    with sync_playwright() as engine:
-        browser = engine.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
-        page = browser.new_page(viewport={"width": 1366, "height": 768})
-        page.add_init_script(f"({WATCH})()")
-        page.goto(told["address"])
-        page.locator("#link", has_text="on this machine only").wait_for()
-        time.sleep(2.0)
-        before = work_ms()
-        for number in range(TIMES):
-            told["loop"].add_callback(tab.show)
-            page.wait_for_function("(count) => window.times.length > count", arg=number, polling=200, timeout=60_000)
-            time.sleep(1.0)
-        work = {kind: round((spent - before.get(kind, 0.0)) / TIMES) for kind, spent in work_ms().items()}
-        times = page.evaluate("window.times")
-        browser.close()
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        page = Watched(folder, FLAGS)
+        try:
+            times, work = asyncio.run(watched(page, tab, told))
+        finally:
+            page.process.terminate()
+            page.process.wait(20)
     shown = tab.state.artefacts()["parts"].content
     print(f"{len(shown['triangles'])} triangles, {len(shown['tets'])} tetrahedra, {len(shown['points'])} nodes")
     print(json.dumps({"work for each view": work}))
