@@ -92,12 +92,15 @@ def measured(address: str, process: psutil.Process, started: float) -> dict[str,
         }
         page.locator("#press .doing", has_text="as softdot run does").wait_for(timeout=300_000)
         page.evaluate(TOLD)
+        print(found, file=sys.stderr)
         found["coarse press after rest"] = answer_ms(page, THICKNESS, FIRST_PLACE, "curves") / 1e3
         page.locator("#press .doing", has_text="as softdot run does").wait_for(timeout=300_000)
         found |= estimates(page)
+        print(found, file=sys.stderr)
         page.locator("#press .cancel").click(timeout=60_000)
         time.sleep(LOADED_S)
         found |= previews(page, process)
+        print(found, file=sys.stderr)
         page.locator("#press .doing", has_text="as softdot run does").wait_for(timeout=300_000)
         found["circuit"] = circuit(page)
         found |= tabs(page, address, process)
@@ -108,12 +111,13 @@ def measured(address: str, process: psutil.Process, started: float) -> dict[str,
 def estimates(page: Page) -> dict[str, float]:
     """Force, charge and voltage by estimate while a slider moves, once the derivatives of the press are there."""
     page.evaluate(ESTIMATED)
-    end = time.monotonic() + 120.0
-    while not page.locator("#numbers .fresh").count() and time.monotonic() < end:
+    for waiting in (LOADED_S, 2 * LOADED_S, 4 * LOADED_S):  # a move ends the search for derivatives
         page.evaluate(MOVED, [THICKNESS, FIRST_PLACE])
-        time.sleep(1.0)
+        time.sleep(waiting)
         page.evaluate(MOVED, [THICKNESS, FIRST_PLACE + 5])
-        time.sleep(0.1)
+        time.sleep(1.0)
+        if page.locator("#numbers .fresh").count():
+            break
     times = [answer_ms(page, THICKNESS, FIRST_PLACE + 10 + 5 * number, "estimate") for number in range(ESTIMATES)]
     return {
         "estimate, median": statistics.median(times) / 1e3,
