@@ -18,7 +18,8 @@ import psutil
 from playwright.sync_api import Page, sync_playwright
 
 FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
-MOVES, FEW = 200, 20
+MOVES, FEW = 100, 20
+ESTIMATES, FIRST_PLACE, OTHER_TABS = 20, 450, 3
 LOADED_S = 10.0
 """After which every process has loaded what it needs."""
 TOLD = """() => {
@@ -36,6 +37,11 @@ MOVED = """([key, place]) => {
 SINCE = (
     "(kind) => { const one = window.told.find(([name]) => name === kind); return one ? one[1] - window.from : null; }"
 )
+ESTIMATED = """() => {
+  new MutationObserver(() => {
+    if (document.querySelector("#numbers .fresh")) window.told.push(["estimate", performance.now()]);
+  }).observe(document.querySelector("#numbers"), { childList: true });
+}"""
 THICKNESS = "segment.medium1.thickness_mm"
 RESISTANCE = "readout.input_resistance_MOhm"
 
@@ -74,7 +80,7 @@ def measured(address: str, process: psutil.Process, started: float) -> dict[str,
     """All figures of one run."""
     with sync_playwright() as engine:
         browser = engine.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
-        page = browser.new_page(viewport={"width": 1366, "height": 768})
+        page = browser.new_context(viewport={"width": 1366, "height": 768}).new_page()
         page.goto("about:blank")
         begin = time.perf_counter()
         page.goto(address)
@@ -86,17 +92,53 @@ def measured(address: str, process: psutil.Process, started: float) -> dict[str,
         }
         page.locator("#press .doing", has_text="as softdot run does").wait_for(timeout=300_000)
         page.evaluate(TOLD)
-        found["coarse press after rest"] = answer_ms(page, THICKNESS, 450, "curves") / 1e3
-        page.locator("#press .cancel").click()
+        print(found, file=sys.stderr)
+        found["coarse press after rest"] = answer_ms(page, THICKNESS, FIRST_PLACE, "curves") / 1e3
+        page.locator("#press .doing", has_text="as softdot run does").wait_for(timeout=300_000)
+        found |= estimates(page)
+        print(found, file=sys.stderr)
+        page.locator("#press .cancel").click(timeout=60_000)
         time.sleep(LOADED_S)
         found |= previews(page, process)
+        print(found, file=sys.stderr)
         page.locator("#press .doing", has_text="as softdot run does").wait_for(timeout=300_000)
         found["circuit"] = circuit(page)
-        page.goto(address)
-        page.locator("#form .field").first.wait_for()
-        page.close()
+        found |= tabs(page, address, process)
         browser.close()
     return found
+
+
+def estimates(page: Page) -> dict[str, float]:
+    """Force, charge and voltage by estimate while a slider moves, once the derivatives of the press are there."""
+    page.evaluate(ESTIMATED)
+    for waiting in (LOADED_S, 2 * LOADED_S, 4 * LOADED_S):  # a move ends the search for derivatives
+        page.evaluate(MOVED, [THICKNESS, FIRST_PLACE])
+        time.sleep(waiting)
+        page.evaluate(MOVED, [THICKNESS, FIRST_PLACE + 5])
+        time.sleep(1.0)
+        if page.locator("#numbers .fresh").count():
+            break
+    times = [answer_ms(page, THICKNESS, FIRST_PLACE + 10 + 5 * number, "estimate") for number in range(ESTIMATES)]
+    return {
+        "estimate, median": statistics.median(times) / 1e3,
+        "estimate, slowest of ten": statistics.quantiles(times, n=10)[-1] / 1e3,
+    }
+
+
+def tabs(page: Page, address: str, process: psutil.Process) -> dict[str, float]:
+    """Another tab until its form is there, and the memory of all of them, each with its press."""
+    times = []
+    for _ in range(OTHER_TABS):
+        other = page.context.new_page()
+        begin = time.perf_counter()
+        other.goto(address)
+        other.locator("#form .field").first.wait_for(state="attached", timeout=60_000)
+        times.append(time.perf_counter() - begin)
+        other.locator("#press .doing", has_text="as softdot run does").wait_for(state="attached", timeout=300_000)
+    return {
+        "form of another tab": statistics.median(times),
+        f"memory with {1 + OTHER_TABS} tabs (MB)": memory_MB(process),
+    }
 
 
 def previews(page: Page, process: psutil.Process) -> dict[str, float]:
@@ -112,8 +154,8 @@ def previews(page: Page, process: psutil.Process) -> dict[str, float]:
         "work of the studio for each move": work / MOVES,
         "geometry preview, median": statistics.median(times) / 1e3,
         "geometry preview, slowest of ten": statistics.quantiles(times, n=10)[-1] / 1e3,
-        "memory after 20 moves (MB)": few,
-        "memory after 200 moves (MB)": many,
+        f"memory after {FEW} moves (MB)": few,
+        f"memory after {MOVES} moves (MB)": many,
         "growth (%)": 100 * (many / few - 1),
     }
 

@@ -187,3 +187,6 @@ def add_studio(commands: Any) -> None:
         "--host", default="127.0.0.1", metavar="ADDRESS", help="address of this machine; other than loopback it is open"
     )
     studio.add_argument("--no-browser", action="store_true", help="only print the address of the page")
+    studio.add_argument(
+        "--family", metavar="FAM", help="folder of softdot family: its designs are estimated and sought by it"
+    )

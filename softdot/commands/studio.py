@@ -34,6 +34,11 @@ def command(chosen: Namespace) -> int:
     start = start_text(chosen.config)
     if chosen.host not in LOOPBACK:
         warn([f"--host {chosen.host}: other machines can reach the page, and what is sent is not encrypted"])
+    if chosen.family is not None:
+        from softdot.families.folder import load_family
+
+        load_family(chosen.family)
+        chosen.family = str(Path(chosen.family).resolve())
     opened: list[Path] = []
 
     def ready(address: str) -> None:
@@ -42,7 +47,7 @@ def command(chosen: Namespace) -> int:
             opened.append(_open(address))
 
     try:
-        run(chosen.host, chosen.port, start, ready)
+        run(chosen.host, chosen.port, start, ready, chosen.family)
     finally:
         for place in opened:
             with suppress(OSError):

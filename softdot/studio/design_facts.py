@@ -60,6 +60,15 @@ class KnownPress:
         return force, charge, voltage
 
     @property
+    def point(self) -> Json | None:
+        """Its answer as a point of a response; None as of answer."""
+        if self.answer is None:
+            return None
+        force, charge, voltage = self.answer
+        warnings = self.found["numbers"].get("warnings", [])
+        return {"force_N": force, "charge_pC": charge, "voltage_V": voltage, "warnings": warnings}
+
+    @property
     def mesh_errors(self) -> tuple[float, float, float]:
         """By which shares its mesh may put force, charge and voltage off."""
         off = self.found["numbers"].get("discretisation_error") or {}

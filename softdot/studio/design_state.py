@@ -13,7 +13,7 @@ from typing import Any
 from softdot.studio.comparison import design_words
 from softdot.studio.design_facts import Artefact, Json, KnownPress, Origin, Phase, Stop
 from softdot.studio.document import Document
-from softdot.studio.estimate import Estimator
+from softdot.studio.estimate import Estimator, same_but_for
 from softdot.studio.phase_words import phase_words
 
 MOST_PRESSES = 6
@@ -35,6 +35,7 @@ class DesignState:
         self.tasks: dict[str, Json] = {}
         self.estimator = Estimator()
         self._checks: OrderedDict[str, Json] = OrderedDict()
+        self._by_family: OrderedDict[str, Json | None] = OrderedDict()
         self._last_check: tuple[int, Json] = (0, {})
         self._presses: OrderedDict[str, KnownPress] = OrderedDict()
         self._made: dict[str, Artefact] = {}
@@ -124,6 +125,16 @@ class DesignState:
         return done and not self.estimator.knows(self.present.press_hash or "")
 
     @property
+    def wants_family(self) -> bool:
+        """Whether a family is to be asked for this design, until its press is there."""
+        return self.press is None and self.text not in self._by_family
+
+    @property
+    def is_of_family(self) -> bool:
+        """Whether a family has answered for this design."""
+        return self._by_family.get(self.text) is not None
+
+    @property
     def presses_to_do(self) -> Sequence[str]:
         """Tasks of its press, without those that are done."""
         tasks: Sequence[str] = (self.check or {}).get("presses", ())
@@ -152,11 +163,12 @@ class DesignState:
 
     def checked(self, text: str, found: Json) -> None:
         """A check has answered, of this text or of one before."""
-        self._checks[text] = found
-        self._checks.move_to_end(text)
-        while len(self._checks) > MOST_CHECKS:
-            self._checks.popitem(last=False)
+        _remember(self._checks, text, found)
         self._settle()
+
+    def answered_by_family(self, text: str, found: Json | None) -> None:
+        """What a family says of this text; None where it is none of the family."""
+        _remember(self._by_family, text, found)
 
     def drawn(self, origin: Origin, view: Json | None) -> None:
         """Parts at rest; None for a design that has none, or whose drawing failed."""
@@ -284,6 +296,8 @@ class DesignState:
             return now.press_hash is not None and origin.press_hash == now.press_hash
         if name == "parts":
             return self._drawn == now.text
+        if name == "response":
+            return same_but_for(made.content["result"]["key"], origin.text, now.text)
         if name == "circuit":
             press = self.press
             same = press is not None and made.content["history"] == press.found.get("history")
@@ -313,8 +327,10 @@ class DesignState:
 
     @property
     def estimate(self) -> Json | None:
-        """Force, charge and voltage of this design to first order, until its press is there."""
-        return None if self.press is not None else self.estimator.estimate(self.text)
+        """Force, charge and voltage of this design by a family or to first order, until its press is there."""
+        if self.press is not None:
+            return None
+        return self._by_family.get(self.text) or self.estimator.estimate(self.text)
 
     @property
     def _pressing(self) -> Json | None:
@@ -332,7 +348,8 @@ class DesignState:
     def _words(self) -> Json:
         press, stop = self.press, self.stop
         pressed = None if press is None else (press.quality, press.failure)
-        return phase_words(self.phase, self.check, pressed, stop.said if stop else None, self._pressing)
+        by = (self.estimate or {}).get("by", "press")
+        return phase_words(self.phase, self.check, pressed, stop.said if stop else None, self._pressing, by)
 
     def told(self) -> Json:
         """The message of the whole state, but for the contents of artefacts."""
@@ -351,6 +368,7 @@ class DesignState:
             "machine": "; ".join(dict.fromkeys(self._machine.values())) or None,
             "saved": True if self.saved is None else self.saved,
             "estimate": self.estimate,
+            "is_of_family": self.is_of_family,
             "artefacts": {
                 name: {
                     "revision": made.origin.revision,
@@ -361,3 +379,11 @@ class DesignState:
             },
             "tasks": self.tasks,
         }  # fmt: skip
+
+
+def _remember(known: OrderedDict[str, Any], text: str, found: Any) -> None:
+    """Keep what is known of MOST_CHECKS texts."""
+    known[text] = found
+    known.move_to_end(text)
+    while len(known) > MOST_CHECKS:
+        known.popitem(last=False)

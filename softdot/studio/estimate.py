@@ -4,7 +4,7 @@ Each is that of the press times (x / x0)^p over all numbers x that differ, where
 line in logarithms, which holds over larger shifts than one in the numbers.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import exp, expm1, log
 from typing import Any
@@ -38,10 +38,11 @@ class PressedBeside:
 
 
 class Estimator:
-    """Presses of a tab, by their press_hash, with what they say of designs beside them."""
+    """Presses of a tab, by their press_hash, with what they say of designs beside them. version : of what is known."""
 
     def __init__(self) -> None:
         self._bases: dict[str, PressedBeside] = {}
+        self.version = 0
         self._scale = 1.0
 
     def knows(self, press_hash: str) -> bool:
@@ -51,6 +52,7 @@ class Estimator:
 
     def learn(self, press_hash: str, text: str, values: Mapping[str, Any], answer: Values, mesh_errors: Values) -> None:
         """An accurate press has answered. What an estimate of it would have missed counts from now on."""
+        self.version += 1
         expected = self.estimate(text)
         if expected is not None and press_hash not in self._bases:
             ratios = (
@@ -70,19 +72,55 @@ class Estimator:
         """Some or all exponents of a press are known."""
         if press_hash in self._bases:
             self._bases[press_hash].exponents |= exponents
+            self.version += 1
 
     def estimate(self, text: str) -> dict[str, Any] | None:
         """{quantity: {"value", "error"}} of a design from the nearest press; None where none is near enough, or where
         more differs than numbers with known exponents.
         """
-        try:
-            stated = dotted(parse_toml(text, "design"))
-        except InputError:
+        stated = _stated(text)
+        near = stated and self._nearest(stated)
+        return self._from(*near) if near and near[1] else None
+
+    def along(self, text: str, key: str, values: Sequence[float]) -> list[dict[str, Any]]:
+        """Estimates of a design at other values of one number, {"value": number, quantity: {"value", "error"}}, all
+        from the press that is nearest to the design itself; none beyond its reach, or where nothing is known.
+        """
+        stated = _stated(text)
+        near = stated and self._nearest(stated)
+        if not stated or not near:
+            return []
+        found = []
+        for value in values:
+            shifts = _shifts(near[0], {**stated, key: value})
+            estimate = None if shifts is None else self._from(near[0], shifts)
+            if estimate is not None:
+                found.append({"value": value, **{name: estimate[name] for name in QUANTITIES}})
+        return found
+
+    def law(self, text: str) -> dict[str, Any] | None:
+        """By which powers the answer of a design grows: its "answer" by quantity, "exponents" (of force, charge and
+        voltage) by dotted key, and "reach", the sum of shifts up to which they count; None where nothing is known.
+        """
+        stated = _stated(text)
+        near = stated and self._nearest(stated)
+        found = self._from(*near) if near else None
+        if not near or found is None:
             return None
-        near = [(basis, shifts) for basis in self._bases.values() if (shifts := _shifts(basis, stated))]
-        if not near:
-            return None
-        basis, shifts = min(near, key=lambda one: sum(map(abs, one[1].values())))
+        basis, shifts = near
+        return {
+            "answer": {name: found[name]["value"] for name in QUANTITIES},
+            "exponents": dict(basis.exponents),
+            "reach": FARTHEST - sum(map(abs, shifts.values())),
+        }
+
+    def _nearest(self, stated: Mapping[str, Any]) -> tuple[PressedBeside, dict[str, float]] | None:
+        """The press from which least differs, and the shifts from it; None where all differ in more than numbers."""
+        near = [(basis, shifts) for basis in self._bases.values() if (shifts := _shifts(basis, stated)) is not None]
+        return min(near, key=lambda one: sum(map(abs, one[1].values())), default=None)
+
+    def _from(self, basis: PressedBeside, shifts: Mapping[str, float]) -> dict[str, Any] | None:
+        """The estimate from one press; None beyond its reach."""
         distance = sum(map(abs, shifts.values()))
         if distance > FARTHEST:
             return None
@@ -94,6 +132,24 @@ class Estimator:
             moved = value * exp(sum(changes))
             found[name] = {"value": moved, "error": abs(moved) * expm1(error)}
         return found
+
+
+def _stated(text: str) -> dict[str, Any] | None:
+    """Dotted keys of a text; None where it is no TOML."""
+    try:
+        return dotted(parse_toml(text, "design"))
+    except InputError:
+        return None
+
+
+def same_but_for(key: str, one: str, other: str) -> bool:
+    """Whether two texts state the same design but for the value of one dotted key."""
+    if one == other:
+        return True
+    before, after = _stated(one), _stated(other)
+    if before is None or after is None:
+        return False
+    return {**before, key: None} == {**after, key: None}
 
 
 def _shifts(basis: PressedBeside, stated: Mapping[str, Any]) -> dict[str, float] | None:

@@ -23,13 +23,17 @@ LOADING = {
 
 @dataclass(frozen=True)
 class Studio:
-    """What all tabs share. draw : the parts; check : designs and circuits; solve : presses and long work."""
+    """What all tabs share. draw : the parts; check : designs and circuits; solve : presses and long work.
+
+    family : folder of a family by which designs are estimated, None without.
+    """
 
     draw: InTurn
     check: InTurn
     solve: Pool
     autosave: Autosave
     scratch: Path
+    family: str | None = None
 
 
 class Follower:
@@ -40,17 +44,20 @@ class Follower:
 
     def __init__(self, state: DesignState, studio: Studio, changed: Callable[[], None]) -> None:
         self._state, self._studio, self._changed = state, studio, changed
-        self._undrawn, self._unchecked, self._circuit_first = asyncio.Event(), asyncio.Event(), False
+        self._undrawn, self._unchecked, self._unasked = asyncio.Event(), asyncio.Event(), asyncio.Event()
+        self._circuit_first = False
         self.moved: list[str] = []
         self._press_task: asyncio.Task[None] | None = None
         self._slopes_task: asyncio.Task[None] | None = None
-        self._tasks = {asyncio.create_task(self._draw()), asyncio.create_task(self._check())}
+        follow = (self._draw(), self._check(), self._ask_the_family())
+        self._tasks = {asyncio.create_task(one) for one in follow}
 
     def touch(self, circuit_first: bool = False) -> None:
         """The design has changed; circuit_first : in the amplifier alone, which is answered before the rest."""
         self._circuit_first = circuit_first
         self._undrawn.set()
         self._unchecked.set()
+        self._unasked.set()
 
     def has_moved(self, key: str) -> None:
         """A hand has moved this number."""
@@ -88,6 +95,18 @@ class Follower:
                 with suppress(TaskRefused, MachineError):
                     view = await self._quick("parts", "design:draw", origin.text)
                 self._state.drawn(origin, view)
+                self._changed()
+
+    async def _ask_the_family(self) -> None:
+        """What a family says of the design, at every change."""
+        while self._studio.family is not None:
+            await self._unasked.wait()
+            self._unasked.clear()
+            while self._state.wants_family:
+                text, found = self._state.text, None
+                with suppress(TaskRefused, MachineError):
+                    found = await self._studio.check.run("goal:answer", self._studio.family, text)
+                self._state.answered_by_family(text, found)
                 self._changed()
 
     async def _check(self) -> None:

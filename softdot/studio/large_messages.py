@@ -6,6 +6,7 @@ from typing import Any
 
 from softdot.studio.design_facts import Artefact, Json
 from softdot.studio.design_state import DesignState
+from softdot.studio.response import drawn_values
 
 Content = Callable[[], Json]
 
@@ -22,6 +23,8 @@ def large_messages(state: DesignState) -> dict[str, tuple[Any, Content]]:
             version = one.number, made["circuit"].number, state.is_current("circuit", made["circuit"])
         elif name == "view":
             version = one.origin.press_hash, one.content.get("quality")
+        elif name == "response":
+            version = one.number, state.estimator.version
         found[name] = version, partial(_content, state, name, one)
     return found
 
@@ -38,4 +41,8 @@ def _content(state: DesignState, name: str, made: Artefact) -> Json:
         return {**head, "found": content["found"]}
     if name == "array":
         return {**head, "pressed": {**content, "press_hash": made.origin.press_hash}}
+    if name == "response" and "line" not in content["result"]:
+        asked = content["result"]
+        line = state.estimator.along(made.origin.text, asked["key"], drawn_values(asked["range"]))
+        return {**head, **content, "result": {**asked, "line": line, "by": "derivatives"}}
     return {**head, **content}

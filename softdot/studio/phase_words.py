@@ -25,16 +25,19 @@ def phase_words(
     pressed: tuple[str, str | None] | None,
     stopped: str | None,
     pressing: Mapping[str, Any] | None,
+    estimated_by: str = "press",
 ) -> dict[str, Any]:
     """said, bad, busy (there is something to cancel) and again (it can be begun anew).
 
     check : of the present design. pressed : quality of its press, and why its steps end early. stopped : why a check or
-    press has no answer. pressing : how far its press is; empty where it has only begun.
+    press has no answer. pressing : how far its press is; empty where it has only begun. estimated_by : press or family.
     """
     quality, failure = pressed or ("", None)
     is_final = phase in ("accurate", "failed", "cancelled") or quality == "array"
     words = {"said": OF_PHASE.get(phase, ""), "bad": phase == "failed", "busy": pressing is not None}
     words["again"] = pressing is None and is_final
+    if phase == "estimated" and estimated_by == "family":
+        words["said"] = "Estimated by the family; this design is pressed when your hand rests."
     if pressing is not None:
         words["said"] = _progress_words(pressing, phase)
     elif stopped is not None:

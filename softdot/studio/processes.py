@@ -58,7 +58,9 @@ class Worker(WorkerProcess):
 
     async def until_warm(self) -> None:
         """Wait for its libraries. ProcessDiedError, TimeoutError."""
-        await asyncio.wait_for(asyncio.shield(asyncio.wrap_future(self._loaded)), LONGEST_LOAD_S)
+        loading = asyncio.wrap_future(self._loaded)
+        loading.add_done_callback(lambda done: done.cancelled() or done.exception())  # nobody may wait any more
+        await asyncio.wait_for(asyncio.shield(loading), LONGEST_LOAD_S)
 
     async def run(self, task: str, *arguments: Any, tell: Tell = lambda _: None) -> Any:
         """What the task returns; it goes on where the waiting is cancelled. TaskRefused, ProcessDiedError."""

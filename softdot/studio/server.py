@@ -28,10 +28,11 @@ LONGEST_LOOK_S = 30.0
 """For a design to be drawn or checked by a process that has loaded; after it another process tries once more."""
 
 
-async def serve(host: str, port: int, start: str, ready: Callable[[str], None]) -> None:
+async def serve(host: str, port: int, start: str, ready: Callable[[str], None], family: str | None = None) -> None:
     """Serve the page until SIGINT or SIGTERM. ready : called with the address once it answers.
 
-    start : text of the design with which a tab begins. InputError for an address that cannot be used.
+    start : text of the design with which a tab begins. family : folder of a family, None without.
+    InputError for an address that cannot be used.
     """
     stop = asyncio.Event()
     keys = PortKey(folder() / "keys")
@@ -43,7 +44,7 @@ async def serve(host: str, port: int, start: str, ready: Callable[[str], None]) 
         solve = Pool("press:warm_up", {"press": Admission(cores()), "long": Admission(max(1, cores() - 1))})
         try:
             check.prepare()
-            tabs = Tabs(guard, Studio(draw, check, solve, Autosave(folder()), scratch), start)
+            tabs = Tabs(guard, Studio(draw, check, solve, Autosave(folder()), scratch, family), start)
             try:
                 server = BoundedServer(
                     application(tabs),
@@ -82,8 +83,8 @@ def _stop_by_signals(stop: asyncio.Event) -> None:
             asyncio.get_running_loop().add_signal_handler(number, stop.set)
 
 
-def run(host: str, port: int, start: str, ready: Callable[[str], None]) -> None:
+def run(host: str, port: int, start: str, ready: Callable[[str], None], family: str | None = None) -> None:
     """As serve, to its end."""
     for name in ("tornado.general", "tornado.access"):  # one line for each broken request of anybody
         logging.getLogger(name).setLevel(logging.CRITICAL)
-    asyncio.run(serve(host, port, start, ready))
+    asyncio.run(serve(host, port, start, ready, family))

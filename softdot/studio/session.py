@@ -5,6 +5,7 @@ import secrets
 import shutil
 import time
 from collections.abc import Awaitable, Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +14,11 @@ from softdot.studio.design_facts import Json, Origin
 from softdot.studio.design_state import DesignState
 from softdot.studio.document import dotted_key
 from softdot.studio.following import Follower, Studio
+from softdot.studio.goal import DesignGoal, design_goal
 from softdot.studio.kept_designs import KeptDesigns
 from softdot.studio.large_messages import large_messages
 from softdot.studio.processes import MachineError, TaskRefused
+from softdot.studio.response import AskedResponse, asked_response, drawn_values, response
 
 ON_DESIGN = {"influences": "influences:influences", "tolerances": "influences:tolerances_of_making"}
 INTO_FOLDER = {"kit": "files:kit", "report": "files:report"}
@@ -24,6 +27,9 @@ QUICK = {"influences", "recording"}
 """Those that take seconds, and so do not queue behind those that take minutes."""
 MADE_BY = {"diagnosis": "verdict"}
 """Artefacts that are not called as the task that makes them."""
+Tell = Callable[[Json], None]
+Work = Callable[..., Awaitable[Json]]
+Then = Callable[[Json, Origin], Origin | None]
 
 
 class Session:
@@ -183,18 +189,23 @@ class Session:
             self._tasks[task].cancel()
 
     def do_start(self, task: str, **asked: Any) -> None:
-        """Long work: influences, tolerances, kit, report, plate or diagnosis, with what it needs."""
+        """Long work: influences, tolerances, kit, report, plate, response, goal or diagnosis, with what it needs."""
         if task in ON_DESIGN:
             self._begin(task, ON_DESIGN[task], self.text)
         elif task in INTO_FOLDER:
             self._begin(task, INTO_FOLDER[task], self.text, self._new_folder(task))
         elif task == "plate":
             self._begin(task, "files:plate", asked, self._new_folder(task))
+        elif task == "response":
+            self._follow_number(asked_response(self._single_segment(), *map(asked.get, ("key", "low", "high"))))
+        elif task == "goal":
+            self._seek(design_goal(self._single_segment(), asked))
         elif task == "diagnosis":
             if self._recording is None:
                 raise InputError("there is no recording yet: drop its folder or a zip file of it")
             place = self._new_folder(task)
-            self._begin(task, "recording:diagnose", str(self._recording), place, bool(asked.get("quick")))
+            asked_for = str(self._recording), place, bool(asked.get("quick"))
+            self._begin(task, "recording:diagnose", *asked_for, then=self._keep_improved)
         else:
             raise InputError("there is no such task")
 
@@ -221,7 +232,7 @@ class Session:
         except BaseException:
             shutil.rmtree(folder, ignore_errors=True)
             raise
-        self._begin("recording", "recording:read", str(place))
+        self._begin("recording", "recording:read", str(place), then=partial(self._keep_recording, place))
 
     # What follows from it.
 
@@ -237,13 +248,18 @@ class Session:
         folder.mkdir()
         return str(folder)
 
-    def _begin(self, task: str, function: str, *arguments: Any) -> None:
+    def _begin(self, task: str, function: str, *arguments: Any, then: Then | None = None) -> None:
+        """A task in a process of its own; what it makes can be downloaded."""
+        room, need = ("press", 0.0) if task in QUICK else ("long", self.state.need_GB)
+        self._begin_work(task, partial(self._studio.solve.run, room, function, *arguments, need_GB=need), then)
+
+    def _begin_work(self, task: str, work: Work, then: Then | None = None) -> None:
+        """work : called with tell. then : takes what it has found before the page is told of it. InputError."""
         if task in self._tasks and not self._tasks[task].done():
             raise InputError("this is under way already; cancel it first")
-        self._tasks[task] = asyncio.create_task(self._work(task, function, *arguments))
+        self._tasks[task] = asyncio.create_task(self._work(task, work, then))
 
-    async def _work(self, task: str, function: str, *arguments: Any) -> None:
-        """A task in a process of its own; what it makes can be downloaded."""
+    async def _work(self, task: str, work: Work, then: Then | None) -> None:
         origin, started = self.state.present, time.monotonic()
 
         def on_way(told: Json) -> None:
@@ -255,24 +271,86 @@ class Session:
 
         self._tell_task(task, origin, "running", progress={"stage": "start", "done": 0, "count": 0, "left_s": None})
         try:
-            room, need = ("press", 0.0) if task in QUICK else ("long", self.state.need_GB)
-            found = await self._studio.solve.run(room, function, *arguments, need_GB=need, tell=on_way)
-            self._keep_result(task, arguments, found)
+            found = await work(tell=on_way)
+            of = (then(found, origin) if then else None) or origin
             made = {"result": self._offered(found), "took_s": time.monotonic() - started}
-            self.state.made(MADE_BY.get(task, task), origin, made)
-            self._tell_task(task, origin, "done", took_s=made["took_s"])
+            self.state.made(MADE_BY.get(task, task), of, made)
+            self._tell_task(task, of, "done", took_s=made["took_s"])
         except asyncio.CancelledError:
             self._tell_task(task, origin, "cancelled", said="cancelled")
             raise
-        except TaskRefused as error:
+        except (InputError, TaskRefused) as error:
             self._tell_task(task, origin, "failed", said=str(error))
         except MachineError as error:
             self._tell_task(task, origin, "failed", said=f"{error}; the design is as it was")
 
-    def _keep_result(self, task: str, arguments: tuple[Any, ...], found: Json) -> None:
-        if task == "recording":
-            self._recording = Path(arguments[0])
-        self._improved = found.get("improved") or self._improved
+    def _keep_recording(self, place: Path, *_: Any) -> None:
+        self._recording = place
+
+    def _keep_improved(self, found: Json, _: Origin) -> None:
+        self._improved = found["improved"] or self._improved
+
+    def _single_segment(self) -> Json:
+        """Values of the present design, which is of one segment and without mistakes. InputError."""
+        check, values = self.state.check or {}, self.state.present.values
+        if values is None or check.get("mistakes"):
+            raise InputError("a design with mistakes, or not checked yet, cannot be pressed")
+        if "array" in check:
+            raise InputError("this is for designs of a single segment")
+        return values
+
+    @property
+    def _family(self) -> str | None:
+        """Folder of the family of which the present design is one."""
+        return self._studio.family if self.state.is_of_family else None
+
+    def _follow_number(self, asked: AskedResponse) -> None:
+        """Presses at other values of one number, beside what a family says of them."""
+        text, family, need = self.text, self._family, self.state.need_GB
+        known = self.state.press.point if self.state.press is not None else None
+
+        async def press(other: str, tell: Tell) -> Json:
+            found: Json = await self._studio.solve.run("long", "press:full_load", other, need_GB=need, tell=tell)
+            return found
+
+        async def work(tell: Tell) -> Json:
+            line: Json = {}
+            if family is not None:
+                drawn = drawn_values((asked.values[0], asked.values[-1]))
+                found = await self._studio.check.run("goal:along", family, text, list(asked.key), drawn)
+                line = {"line": found, "by": "family"} if found else {}
+            points = await response(press, text, asked, known, lambda told: tell({**told, **line}))
+            return {**points, **line}
+
+        self._begin_work("response", work)
+
+    def _seek(self, goal: DesignGoal) -> None:
+        """Move the numbers of the design to where it meets a goal, by a family where there is one. InputError."""
+        text, family = self.text, self._family
+        law = self.state.estimator.law(text)
+        if family is None and law is None:
+            raise InputError(
+                "nothing is known yet of how this design follows its numbers: its accurate press tells, and some "
+                "seconds later its derivatives"
+            )
+
+        async def work(tell: Tell) -> Json:
+            if family is not None:
+                asked = "press", "goal:by_family", family, text, goal.as_dict()
+                found: Json = await self._studio.solve.run(*asked, tell=tell)
+            else:
+                found = await self._studio.check.run("goal:by_law", law, goal.as_dict())
+            return {**found, "enough": goal.enough, "target": goal.target, "least": goal.least}
+
+        self._begin_work("goal", work, self._move_to_goal)
+
+    def _move_to_goal(self, found: Json, origin: Origin) -> Origin:
+        """The design is moved where the goal is met. TaskRefused where it is another one by now."""
+        if self.text != origin.text:
+            raise TaskRefused("the design has been changed meanwhile, so that nothing was moved; ask again")
+        if found["reached"]:
+            self.do_change(found["changes"])
+        return self.state.present
 
     def _tell_task(self, task: str, origin: Origin, how: str, **more: Any) -> None:
         self.state.tasks[task] = {"is": how, "revision": origin.revision, **more}

@@ -63,6 +63,7 @@ class Studied(RuleBasedStateMachine):
         self.state = DesignState(text_of(0.4, "a", 1))
         self.page = Page()
         self.draws, self.checks, self.circuits, self.jobs, self.kits = [], [], [], [], []
+        self.family_asked, self.responses = [], []
 
     # The hand.
 
@@ -173,6 +174,40 @@ class Studied(RuleBasedStateMachine):
     def exponents_are_known(self):
         self.state.estimator.add_exponents(self.state.present.press_hash, {"thickness": (1.0, 1.0, 2.0)})
 
+    @precondition(lambda self: self.state.wants_family and not self.family_asked)
+    @rule()
+    def ask_the_family(self):
+        self.family_asked.append(self.state.text)
+
+    @precondition(lambda self: self.family_asked)
+    @rule(knows=st.booleans())
+    def the_family_answers(self, knows):
+        text = self.family_asked.pop()
+        thickness = parsed(text)[0]
+        values = {"force_N": thickness, "charge_pC": thickness, "voltage_V": thickness**2}
+        found = {name: {"value": value, "error": 0.1} for name, value in values.items()} | {"by": "family"}
+        self.state.answered_by_family(text, found if knows else None)
+
+    @precondition(lambda self: (self.state.check or {}).get("press_hash"))
+    @rule()
+    def follow_the_thickness(self):
+        self.responses.append(self.state.present)
+
+    @precondition(lambda self: self.responses)
+    @rule(is_last=st.booleans())
+    def a_point_is_pressed(self, is_last):
+        """Also of a design before; more points may come."""
+        origin = self.responses.pop() if is_last else self.responses[-1]
+        found = {"key": "thickness", "range": [0.4, 0.52], "points": [], "resistance": parsed(origin.text)[1]}
+        self.state.made("response", origin, {"result": found})
+
+    @precondition(lambda self: self.state.check and not self.state.check["mistakes"])
+    @rule(thickness=st.sampled_from([0.47, 0.52]))
+    def move_to_a_goal(self, thickness):
+        self.state.document.set(["thickness"], thickness)
+        self.edited()
+        self.state.made("goal", self.state.present, {"result": {"thickness": thickness}})
+
     @rule()
     def ask_for_a_kit(self):
         self.kits.append(self.state.present)
@@ -201,10 +236,14 @@ class Studied(RuleBasedStateMachine):
             "curves": lambda one: one["curves"][-1]["numbers"]["voltage"] == 10 * thickness,
             "circuit": lambda one: one["found"]["readout_voltage_V"] == 10 * thickness * resistance,
             "kit": lambda one: one["result"] == (thickness, resistance),
+            "response": lambda one: one["result"]["resistance"] == resistance,
+            "goal": lambda one: one["result"]["thickness"] == thickness,
         }
         for name, content in page.contents.items():
             assert not page.state["artefacts"][name]["current"] or true[name](content)
             assert content["revision"] == page.state["artefacts"][name]["revision"]
+        for one in page.contents.get("response", {"result": {"line": []}})["result"]["line"]:
+            assert one["voltage_V"]["value"] == pytest.approx(one["value"] ** 2)
         assert page.state["design"]["text"] == text
 
     def the_amplifier_stands_beside_its_own_press(self):
@@ -228,7 +267,9 @@ class Studied(RuleBasedStateMachine):
             thickness = parsed(self.state.text)[0]
             assert phase not in ("coarse", "accurate")
             assert told["estimate"]["voltage_V"]["value"] == pytest.approx(thickness**2)
+            assert told["estimate"].get("by") != "family" or told["is_of_family"]
         assert (phase == "estimated") <= (told["estimate"] is not None)
+        assert ("by the family" in told["said"]) <= (phase == "estimated" and told["is_of_family"])
         if phase == "drawn":
             assert "parts" in current
         if phase == "checked" and not told["busy"]:

@@ -374,6 +374,7 @@ def test_other_addresses_only_when_told_and_then_under_that_name_alone():
         (["--port", "70000"], "--port = 70000: must be between"),
         (["--host", "no.such.host.invalid"], "cannot be used"),
         (["none.toml"], "there is no such file"),
+        (["--family", "nowhere"], "'nowhere': holds no 'family.json'"),
     ],
 )
 def test_bad_arguments_are_refused_in_one_sentence(tmp_path, arguments, said):

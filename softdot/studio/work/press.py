@@ -15,6 +15,8 @@ from softdot.case import Case
 from softdot.json_files import plain
 from softdot.prepared_press import PreparedPress
 from softdot.pressed import Pressed
+from softdot.studio.design_facts import ANSWER
+from softdot.studio.estimate import QUANTITIES
 from softdot.studio.work.design import case_of, config_of, pressed_part
 from softdot.studio.work.remedies import late_remedies
 from softdot.summary import mesh_part, press_part
@@ -47,6 +49,20 @@ def accurate_press(text: str, tell: Tell) -> dict[str, Any]:
         errors = with_charge(case.uncertainty(found["numbers"]))
         return {**found, "view": None, "numbers": {**found["numbers"], **plain(errors)}}
     return found
+
+
+def full_load(text: str, tell: Tell) -> dict[str, Any]:
+    """Force, charge and voltage of the accurate press at full load, with its warnings. InputError where it is not
+    reached.
+    """
+    case = pressed_part(case_of(text))
+    _ = case.checked_design
+    pressed = _pressed_with_progress(case, TaskProgress(tell))
+    numbers = press_part(case.model, pressed.result, pressed.course)
+    if not numbers["solver"]["converged"]:
+        raise InputError(f"not converged, {numbers['solver']['failure']}")
+    answer = {name: numbers[key][-1] for name, key in zip(QUANTITIES, ANSWER, strict=True)}
+    return dict(plain({**answer, "warnings": pressed.doubts}))
 
 
 def with_charge(errors: Mapping[str, Any]) -> dict[str, Any]:

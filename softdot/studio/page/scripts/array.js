@@ -1,6 +1,6 @@
 // An array: the dots of a cell as buttons, and the voltages of all segments on a view from above.
 import { segments } from "./charts.js";
-import { element, find, short } from "./dom.js";
+import { element, find, findAll, short } from "./dom.js";
 
 const FIRST = 0x2800,
   COLUMNS = [
@@ -32,7 +32,7 @@ function toggle(dot, ask) {
     ],
   });
   hash = undefined; // the voltages are those of the cell before
-  label();
+  drawCell();
   draw();
 }
 
@@ -55,18 +55,18 @@ export function state(told) {
   const there = Boolean(told.values.array);
   find("#array").hidden = !there;
   find("#result").classList.toggle("of-array", there);
-  for (const one of document.querySelectorAll(".alone")) one.hidden = there;
+  for (const one of findAll(".alone")) one.hidden = there;
   if (!there || !told.array) return there;
   const late = wanted && wanted.cell !== told.array.cell && performance.now() - wanted.at < LATE_MS;
   if (!late) wanted = null;
   layout = late ? { ...told.array, cell: wanted.cell } : told.array; // an answer to a click before the last one
   hash = told.press_hash;
-  label();
+  drawCell();
   draw();
   return there;
 }
 
-function label() {
+function drawCell() {
   for (const button of find("#array .cell").children) {
     const dot = Number(button.dataset.dot),
       under = layout.under[dot];

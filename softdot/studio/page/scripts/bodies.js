@@ -16,7 +16,7 @@ export const FIELDS = {
     bare: true,
     map: "diverging",
   },
-  pressure: { name: "contact pressure", unit: "MPa", factor: 1, on: (part, film, top) => part === top },
+  pressure: { name: "contact pressure", unit: "MPa", factor: 1, on: (part, _, top) => part === top },
 };
 
 // Flat normals come from screen derivatives. A back face is seen only where a section opens a part: it is filled.
@@ -80,6 +80,7 @@ export class Bodies {
     this.step = 0;
     this.field = "part";
     this.section = { axis: "y", at: 0 };
+    this.isMoved = false; // somebody has moved the section
     const beside = { stencilRef: CUT_OF_DOT, stencilFunc: THREE.NotEqualStencilFunc };
     const marking = (ref) => ({
       stencilRef: ref,
@@ -87,7 +88,8 @@ export class Bodies {
       stencilZPass: THREE.ReplaceStencilOp,
     });
     const made = (...of) => new THREE.Mesh(new THREE.BufferGeometry(), material(...of));
-    [this.parts, this.face] = [made(1, THREE.DoubleSide, beside), made(0, THREE.DoubleSide, beside)];
+    this.parts = made(1, THREE.DoubleSide, beside);
+    this.face = made(0, THREE.DoubleSide, beside);
     this.dots = [made(0, THREE.FrontSide, marking(0)), made(2, THREE.BackSide, marking(CUT_OF_DOT))];
     this.scene.add(...this.dots, this.parts, this.face);
     [...this.dots, this.parts, this.face].forEach((mesh, i) => {

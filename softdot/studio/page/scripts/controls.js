@@ -117,6 +117,8 @@ function number(form, found, path, id, name) {
     "aria-label": `${name}, slider`,
   });
   slider.dataset.slider = dotted(path);
+  slider.dataset.path = JSON.stringify(path);
+  slider.dataset.name = name;
   let scale = null,
     held = false,
     waiting = null;
@@ -146,6 +148,7 @@ function number(form, found, path, id, name) {
     if (!scale || value < scale.low || value > scale.high) scale = scaled(found, value, whole);
     slider.value = scale.place(value);
     slider.setAttribute("aria-valuetext", short(value));
+    Object.assign(slider.dataset, { now: value, low: scale.low, high: scale.high });
   };
   return { single: true, parts: [input], slider, show };
 }

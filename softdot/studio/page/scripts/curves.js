@@ -1,5 +1,5 @@
 // Force, charge and voltage of the designs and of a recording, over depth or time, with uPlot.
-import { download, element, find, short } from "./dom.js";
+import { download, element, find, findAll, short } from "./dom.js";
 import { Heard } from "./sound.js";
 
 const QUANTITIES = [
@@ -311,7 +311,7 @@ export class Curves {
     this.over = "depth";
     this.plots = QUANTITIES.map((quantity) => new Plot(quantity, say, "studio"));
     place.replaceChildren(...this.plots.map((one) => one.box));
-    for (const input of document.querySelectorAll("input[name=over]")) {
+    for (const input of findAll("input[name=over]")) {
       input.addEventListener("change", () => {
         this.over = input.value;
         this.draw();
@@ -322,7 +322,8 @@ export class Curves {
   }
 
   show(designs, runs) {
-    Object.assign(this, { designs, runs });
+    this.designs = designs;
+    this.runs = runs;
     this.draw();
   }
 

@@ -25,7 +25,13 @@ export class Designs {
   // ask(message): tells the program; drawn(list, runs): shows the curves of designs, the present one first, and of
   // a recording.
   constructor(ask, drawn) {
-    Object.assign(this, { ask, drawn, now: null, kept: [], runs: [], rows: [], most: 4 });
+    this.ask = ask;
+    this.drawn = drawn;
+    this.now = null;
+    this.kept = [];
+    this.runs = [];
+    this.rows = [];
+    this.most = 4;
   }
 
   // The last press: of the present design, or of the one before.
@@ -44,7 +50,8 @@ export class Designs {
   hear({ designs, rows, most }) {
     const looks = (i) => ({ colour: `--kept-${i % DASHES.length}`, dash: DASHES[i % DASHES.length] });
     this.kept = designs.map((one, i) => ({ ...one, number: i, ...looks(i) }));
-    Object.assign(this, { rows, most });
+    this.rows = rows;
+    this.most = most;
     this.show();
   }
 

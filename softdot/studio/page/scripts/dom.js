@@ -1,4 +1,12 @@
 // Elements in one call, and numbers as people read them.
+
+/**
+ * An element of the page. attributes: those that begin with "on" are listeners.
+ * @param {string} tag
+ * @param {Record<string, any>} attributes
+ * @param {...(Node | string | null | undefined)} children
+ * @returns {any}
+ */
 export function element(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
@@ -11,7 +19,11 @@ export function element(tag, attributes = {}, ...children) {
   return made;
 }
 
+/** @type {(selector: string) => any} */
 export const find = (selector) => document.querySelector(selector);
+
+/** @type {(selector: string) => any[]} */
+export const findAll = (selector) => [...document.querySelectorAll(selector)];
 
 export function short(value) {
   if (value === null || value === undefined) return "–";

@@ -215,6 +215,7 @@ export class Form {
       id = `field-${++count}`;
     const [words, unit] = worded(key, this.about.units),
       made = control(this, found, path, id, spoken(words, path));
+    if (made.slider) made.slider.dataset.unit = unit;
     const hint = element("span", { class: "aside", id: `${id}-about` }, found.description || "");
     const wrong = element("div", { class: "wrong", id: `${id}-wrong` });
     const name = element("span", { class: "name" }, words),

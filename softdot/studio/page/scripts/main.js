@@ -1,13 +1,17 @@
 // The tab: its socket to the program, and who shows what the program tells.
 import * as array from "./array.js";
+import { prepareControls } from "./by_hand.js";
 import { Curves } from "./curves.js";
 import { Designs } from "./designs.js";
 import { duration, element, find, roving } from "./dom.js";
 import { Form } from "./form.js";
 import { filter, hints, tidy } from "./form_search.js";
 import { unpacked } from "./frames.js";
+import { GoalPanel } from "./goal.js";
 import * as next from "./next.js";
+import { numbersOf } from "./quantities.js";
 import * as recording from "./recording.js";
+import { ResponsePanel } from "./response.js";
 import * as result from "./result.js";
 import { StartPage } from "./start.js";
 import { Store } from "./store.js";
@@ -27,12 +31,19 @@ const tab = {
 };
 const store = new Store(sessionStorage);
 const viewer = new View(find("#view3d"));
-const curves = new Curves(find("#curves"), (text) => { find("#heard").textContent = text; });
+const aloud = (text) => {
+  find("#heard").textContent = text;
+};
+const curves = new Curves(find("#curves"), aloud);
 const designs = new Designs(ask, (list, runs) => curves.show(list, runs));
 const editor = new Editor(find("#text"), find("#toml .lines"));
 const start = new StartPage(find("#start"), ask);
 const tasks = new next.Tasks(ask, address);
+const response = new ResponsePanel(find("#along"), find("#response"), ask, aloud);
+const goal = new GoalPanel(find("#goal"), find("#goal-found"), ask);
 const RESULTS = { influences: "Each number 10 % larger", tolerances: "Each number at the end of its tolerance" };
+// Panels with a mark of their own where they are of a design before.
+const PANELS = ["response", "goal"];
 const MARKED = { numbers: "#numbers", curves: "#curves", circuit: "#circuit .answer", array: "#array figure" };
 
 // Files have addresses of their own, which hold no key; a report is shown in a frame that leads nowhere else.
@@ -97,13 +108,17 @@ function paintForm({ design }) {
   }
   tab.form.update(design.values, design.stated, design.mistakes, design.remedies);
   tab.circuit.update(design.values, design.stated, design.mistakes, design.remedies);
-  if (tab.isBuilt) return tidy(find("#form"));
+  if (!tab.isBuilt) buildForm();
+  else tidy(find("#form"));
+}
+
+function buildForm() {
   tab.isBuilt = true;
   find("#form").replaceChildren(...tab.form.whole());
   filter(find("#form"), find("#find").value); // typed before there was a form
   find("#circuit .fields").replaceChildren(tab.circuit.table(store.form.schema.properties.readout, ["readout"]));
   find("#circuit .fields details").open = true;
-  return hints(find("#form"), find("#hint"));
+  hints(find("#form"), find("#hint"));
 }
 
 function paintDesign({ design }) {
@@ -134,13 +149,21 @@ function late() {
 
 function paintContents() {
   const { curves: pressed, circuit, array: cells, kept, recording: read, verdict } = store.contents;
-  const now = pressed && pressed.curves[pressed.curves.length - 1], { estimate } = store.state;
+  const now = pressed && pressed.curves[pressed.curves.length - 1],
+    { estimate } = store.state;
   if (isNew("curves", pressed) && now) designs.present(now);
-  const numbers = now && JSON.stringify([estimate, pressed.revision, now.quality, now.numbers]);
-  if (isNew("numbers", numbers) && now) result.show(now, estimate);
+  const latest = now || { numbers: {}, quality: "" }; // a family estimates before anything is pressed
+  const numbers = (now || estimate) && JSON.stringify([estimate, pressed && pressed.revision, latest]);
+  if (isNew("numbers", numbers) && numbers) result.show(latest, estimate);
+  paintPanels(now, estimate);
   if (isNew("circuit", circuit) && circuit) result.circuit(circuit.found);
   if (isNew("array", cells) && cells) array.show(cells.pressed);
   if (isNew("kept", kept) && kept) designs.hear(kept);
+  paintInfluences();
+  paintRecording(read, verdict);
+}
+
+function paintInfluences() {
   for (const [name, title] of Object.entries(RESULTS)) {
     const found = store.contents[name];
     if (isNew(name, found) && found) {
@@ -148,6 +171,9 @@ function paintContents() {
       tab.influences = name;
     }
   }
+}
+
+function paintRecording(read, verdict) {
   if (isNew("recording", read)) {
     designs.record(read && read.result.of !== "a coupon" ? read.result.runs : []); // a strip is not pressed
     if (read && store.form) recording.show(read.result, ask, store.form.units);
@@ -155,6 +181,23 @@ function paintContents() {
     tab.painted.verdict = undefined;
   }
   if (isNew("verdict", verdict) && verdict) recording.verdict(verdict.result, ask, address);
+}
+
+// What follows one number, and the goal: both are of the numbers that the form shows.
+function paintPanels(now, estimate) {
+  const { response: along, goal: sought } = store.contents,
+    numbers = numbersOf(find("#form"));
+  const isOfFamily = store.state.is_of_family;
+  if (isNew("offered", JSON.stringify([numbers, isOfFamily]))) {
+    response.offer(numbers);
+    goal.offer(numbers, isOfFamily);
+  }
+  if (isNew("response", along) && along) response.show(along.result);
+  const isAccurate = store.isCurrent("numbers") && now && now.quality === "accurate",
+    isCurrent = store.isCurrent("goal");
+  const pressed = isAccurate ? result.atFullLoad(now.numbers) : null;
+  if (isNew("goal", JSON.stringify([sought, isCurrent, estimate, pressed])))
+    goal.show(sought ? sought.result : null, isCurrent, estimate, pressed);
 }
 
 // Long work: each as far as the program says it is.
@@ -167,7 +210,8 @@ function paintTasks({ tasks: known, artefacts }) {
       if (is === "running") tasks.progress({ task, ...progress });
       else tasks.ended({ task, said: is === "done" ? `done in ${duration(took)}` : said, bad: is === "failed" });
     }
-    tasks.item(task).querySelector(".old").hidden = !artefacts[name] || artefacts[name].current;
+    const isOld = Boolean(artefacts[name]) && !artefacts[name].current;
+    tasks.item(task).querySelector(".old").hidden = PANELS.includes(name) || !isOld;
   }
 }
 
@@ -181,21 +225,20 @@ function paintMarks({ artefacts }) {
     ? `Force, charge and voltage are estimated; curves and other numbers are ${whose}`
     : `The numbers and curves are still ${whose}`;
   for (const [name, place] of Object.entries(MARKED)) find(place).classList.toggle("stale", isOld(name));
-  const name = tab.influences,
-    place = find("#influences"),
-    old = name && isOld(name);
+  markPanel("#influences", tab.influences, () => ask({ do: "start", task: tab.influences }));
+  markPanel("#response", "response", () => response.again());
+}
+
+// A panel of a design before says so, with a button that makes it anew.
+function markPanel(panel, name, again) {
+  const place = find(panel),
+    old = name ? store.before(name) : "";
   place.classList.toggle("stale", Boolean(old));
-  if (!isNew("mark of influences", old ? store.before(name) : "") && place.querySelector(".before")) return;
+  if (!isNew(`mark of ${panel}`, old) && Boolean(place.querySelector(".before")) === Boolean(old)) return;
   for (const mark of place.querySelectorAll(".before")) mark.remove();
-  if (old)
-    place.prepend(
-      element(
-        "p",
-        { class: "before" },
-        `${store.before(name)} `,
-        element("button", { type: "button", onclick: () => ask({ do: "start", task: name }) }, "Make it anew"),
-      ),
-    );
+  if (!old) return;
+  const button = element("button", { type: "button", onclick: again }, "Make it anew");
+  place.prepend(element("p", { class: "before" }, `${old} `, button));
 }
 
 function paintLink() {
@@ -296,102 +339,15 @@ async function connect() {
 
 window.addEventListener("pagehide", () => sessionStorage.removeItem("open"));
 
-function typing() {
-  const text = find("#text");
-  let later = null;
-  const send = () => {
-    delete text.dataset.dirty;
-    if (store.state && text.value !== store.state.design.text) ask({ do: "text", text: text.value });
-  };
-  text.addEventListener("input", () => {
-    text.dataset.dirty = "yes";
-    clearTimeout(later);
-    later = setTimeout(send, 500);
-  });
-  text.addEventListener("change", send);
-}
-
-function files() {
-  const input = find("#import-file");
-  const open = async (file) => {
-    if (file.size > 200000)
-      return say(`'${file.name}' has ${(file.size / 1e6).toFixed(1)} MB: a design is a small TOML file.`, true);
-    return ask({ do: "text", text: await file.text() });
-  };
-  find("#import").addEventListener("click", () => input.click());
-  input.addEventListener("change", () => {
-    if (input.files[0]) open(input.files[0]);
-    input.value = "";
-  });
-  find("#export").addEventListener("click", () => {
-    const made = URL.createObjectURL(
-      new Blob([store.state ? store.state.design.text : ""], { type: "application/toml" }),
-    );
-    element("a", { href: made, download: "design.toml" }).click();
-    setTimeout(() => URL.revokeObjectURL(made), 1000);
-  });
-  const design = find("#design");
-  design.addEventListener("dragover", (event) => event.preventDefault());
-  design.addEventListener("drop", (event) => {
-    event.preventDefault();
-    if (event.dataTransfer.files[0]) open(event.dataTransfer.files[0]);
-  });
-}
-
-function buttons() {
-  for (const name of ["undo", "redo", "reset"]) find(`#${name}`).addEventListener("click", () => ask({ do: name }));
-  // What is being typed has an undo of its own; once it is sent, undo is that of the design.
-  const typed = new WeakSet();
-  document.addEventListener("input", (event) => typed.add(event.target), true);
-  document.addEventListener("change", (event) => typed.delete(event.target), true);
-  document.addEventListener("keydown", (event) => {
-    if (!(event.ctrlKey || event.metaKey) || typed.has(event.target) || event.target.matches("textarea")) return;
-    const name =
-      event.key.toLowerCase() === "z" ? (event.shiftKey ? "redo" : "undo") : event.key === "y" ? "redo" : null;
-    if (name) {
-      event.preventDefault();
-      ask({ do: name });
-    }
-  });
-  find("#press .cancel").addEventListener("click", () => ask({ do: "cancel", task: "press" }));
-  find("#press .again").addEventListener("click", () => {
-    ask({ do: "press" });
-  });
-  for (const one of document.querySelectorAll("[data-start]"))
-    one.addEventListener("click", () => ask({ do: "start", task: one.dataset.start }));
-  find("#plate button").addEventListener("click", () =>
-    ask({
-      do: "start",
-      task: "plate",
-      kind: "text",
-      text: find("#plate input").value,
-      standard: find("#plate select").value,
-    }),
-  );
-  find("#keep").addEventListener("submit", (event) => {
-    event.preventDefault();
-    ask({ do: "keep", name: find("#keep input").value });
-    find("#keep input").value = "";
-  });
-  find("#every").addEventListener("change", (event) => {
-    find("#form").classList.toggle("every", event.target.checked);
-    tidy(find("#form"));
-  });
-  find("#begin").addEventListener("click", () => start.open());
-  find("#said button").addEventListener("click", () => {
-    find("#said").hidden = true;
-  });
-  find("#find").addEventListener("input", (event) => filter(find("#form"), event.target.value));
-  find("#form").addEventListener("submit", (event) => event.preventDefault());
-}
-
 window.addEventListener("dragover", (event) => event.preventDefault());
 window.addEventListener("drop", (event) => event.preventDefault());
 prepareTabs();
 roving(find("header .tools"));
-typing();
-files();
-buttons();
+prepareControls({ store, ask, say, start });
+find("#form").addEventListener("input", ({ target }) => {
+  const field = target.closest(".field[data-key]");
+  if (field) response.follow(field.dataset.key);
+});
 recording.prepare(address, say);
 array.prepare(ask);
 connect();

@@ -11,9 +11,17 @@ export const TITLES = {
   tolerances: "Tolerances",
   recording: "Recording",
   diagnosis: "Diagnosis",
+  response: "Presses along one number",
+  goal: "Goal",
 };
 
-const OF_RECORDING = ["recording", "diagnosis"];
+// Work whose progress stands in a panel of its own.
+const PLACES = {
+  recording: "#drop-tasks",
+  diagnosis: "#drop-tasks",
+  response: "#response-tasks",
+  goal: "#goal-tasks",
+};
 
 function mending(sentence, remedy, ask) {
   const button =
@@ -102,7 +110,7 @@ export class Tasks {
         element("div", { class: "more" }),
         element("button", { type: "button", onclick: () => this.ask({ do: "cancel", task }) }, "Cancel"),
       );
-      find(OF_RECORDING.includes(task) ? "#drop-tasks" : "#tasks").prepend(this.items[task]);
+      find(PLACES[task] || "#tasks").prepend(this.items[task]);
     }
     return this.items[task];
   }

@@ -25,14 +25,15 @@ const LARGE = [
 ];
 
 // The unit in which a value has one to three digits before its point, and the value of one of it.
+/** @returns {[number, string]} */
 function unitOf(value, unit) {
   const [factor, base] = FACTORS[unit] || [1, unit];
   if (BARE.includes(base) || !value) return [1, unit];
   const size = Math.abs(value) * factor;
   if (factor === 1 && size >= 0.1 && size < 1) return [1, unit];
   const prefixes = base === "Pa" ? [...LARGE, ...PREFIXES] : PREFIXES;
-  const [scale, prefix] = prefixes.find(([one]) => size >= 0.9995 * one) || prefixes[prefixes.length - 1];
-  return [scale / factor, prefix + base];
+  const found = prefixes.find(([one]) => size >= 0.9995 * Number(one)) || prefixes[prefixes.length - 1];
+  return [Number(found[0]) / factor, found[1] + base];
 }
 
 const minus = (text) => text.replace("-", "−");

@@ -3,12 +3,18 @@ import { channel } from "./charts.js";
 import { element, find } from "./dom.js";
 import { quantity } from "./numbers.js";
 
+// What is shown of a press: key of its course, title and unit, key of its uncertainty, and what estimates call it.
 const QUANTITIES = [
-  ["reaction_force_N", "Force", "N", "force_percent", "force_N"],
-  ["film_charge_pC", "Charge", "pC", "charge_percent", "charge_pC"],
-  ["open_circuit_voltage_V", "Open circuit", "V", "voltage_percent", "voltage_V"],
+  { key: "reaction_force_N", title: "Force", unit: "N", percent: "force_percent", given: "force_N" },
+  { key: "film_charge_pC", title: "Charge", unit: "pC", percent: "charge_percent", given: "charge_pC" },
+  {
+    key: "open_circuit_voltage_V",
+    title: "Open circuit",
+    unit: "V",
+    percent: "voltage_percent",
+    given: "voltage_V",
+  },
 ];
-const ESTIMATED = 4;
 const COARSE_DIGITS = 2,
   CIRCUIT_DIGITS = 4;
 const last = (values) => (values && values.length ? values[values.length - 1] : null);
@@ -30,7 +36,7 @@ function off(numbers, percent, value) {
   return [null, numbers.uncertainty ? "" : "error bars follow"];
 }
 
-function card(numbers, quality, [key, title, unit, percent]) {
+function card(numbers, quality, { key, title, unit, percent }) {
   const value = last(numbers[key]);
   if (quality === "coarse") {
     return { title, value: quantity(value, unit, null, COARSE_DIGITS), words: "coarse, some percent off" };
@@ -39,23 +45,27 @@ function card(numbers, quality, [key, title, unit, percent]) {
   return { title, value: quantity(value, unit, error), words, more };
 }
 
-// Of a design that is not pressed yet, from the derivatives of one that is.
-function estimated({ value, error }, [, title, unit]) {
+// Of a design that is not pressed yet, from the derivatives of one that is, or by a family.
+function estimated({ value, error }, { title, unit }, by) {
   return {
     title,
     value: quantity(value, unit, error),
     words: "estimate",
-    more: "to first order from a press before",
+    more: by === "family" ? "by the family, with its interval" : "to first order from a press before",
     fresh: true,
   };
 }
+
+// What a press gives at full load, as goals and estimates name it.
+export const atFullLoad = (numbers) =>
+  Object.fromEntries(QUANTITIES.map(({ key, given }) => [given, last(numbers[key])]));
 
 // The last press, and the estimate for the present design where there is one.
 export function show({ numbers, quality }, estimate) {
   const readout = last(numbers.readout_voltage_V),
     film = numbers.film || {};
   const cards = QUANTITIES.map((one) =>
-    estimate ? estimated(estimate[one[ESTIMATED]], one) : card(numbers, quality, one),
+    estimate ? estimated(estimate[one.given], one, estimate.by) : card(numbers, quality, one),
   );
   if (readout !== null) cards.push({ title: "At the amplifier", value: quantity(readout, "V"), words: "" });
   const stress = quantity(film.max_principal_stress_MPa, "MPa"),

@@ -59,6 +59,7 @@ export function sketch(sizes, { width, height } = ROOM) {
   return svg;
 }
 
+/** @type {[string, string, number][]} */
 const LABELS = [
   ["dot", "the Braille dot, a rigid cap", 30],
   ["effector", "effector: passes the dot's force on", 64],

@@ -91,8 +91,8 @@ function cutEdges({ points, tets, region }, axis, at, hidden) {
     count += TRIANGLES[above].length;
   }
   const ends = new Uint32Array(count);
-  for (let t = 0, at = 0; t < shape.length; t++) {
-    for (const corner of TRIANGLES[shape[t]]) ends[at++] = tets[4 * t + corner];
+  for (let t = 0, k = 0; t < shape.length; t++) {
+    for (const corner of TRIANGLES[shape[t]]) ends[k++] = tets[4 * t + corner];
   }
   return ends;
 }

@@ -26,7 +26,15 @@ function note(pitch, pan, at, long) {
 // place: the element that takes the keys; series(): [{name, x, y}] that are shown; axes: {x, y}; say(text): read aloud.
 export class Heard {
   constructor(place, series, axes, say) {
-    Object.assign(this, { place, series, axes, say, row: 0, at: -1, text: true, sound: true, tones: [] });
+    this.place = place;
+    this.series = series;
+    this.axes = axes;
+    this.say = say;
+    this.row = 0;
+    this.at = -1;
+    this.text = true;
+    this.sound = true;
+    this.tones = [];
     this.braille = element("input", {
       class: "braille",
       readonly: true,

@@ -15,7 +15,11 @@ const RECORDING =
 export class StartPage {
   // ask(message): tells the program.
   constructor(place, ask) {
-    Object.assign(this, { place, ask, earlier: [], form: null, told: false });
+    this.place = place;
+    this.ask = ask;
+    this.earlier = [];
+    this.form = null;
+    this.told = false;
     place.addEventListener("keydown", (event) => {
       if (event.key === "Escape") this.close();
     });

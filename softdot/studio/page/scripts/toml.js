@@ -28,7 +28,9 @@ export function lineOf(text, sentence) {
 
 export class Editor {
   constructor(area, lines) {
-    Object.assign(this, { area, lines, mistakes: [] });
+    this.area = area;
+    this.lines = lines;
+    this.mistakes = [];
     area.addEventListener("input", () => this.number());
     area.addEventListener("scroll", () => {
       lines.scrollTop = area.scrollTop;

@@ -1,0 +1,78 @@
+"""A number is followed and a goal is met in the page, on a slice that is pressed in a second."""
+
+import re
+import tomllib
+
+import pytest
+
+from tests.studio.test_page import of_run, slide, until
+
+pytestmark = pytest.mark.browser
+
+THICKNESS, DEPTH = "segment.medium1.thickness_mm", "press.indentation_mm"
+NUMBER = re.compile(r"[\d.]+")
+
+
+def points(tab):
+    """Rows of the table: value of the number, voltage, force, charge."""
+    rows = tab.page.locator("#response tbody tr").all()
+    return [[float(cell) for cell in row.locator("th, td").all_inner_texts()[:4]] for row in rows]
+
+
+def test_a_number_is_followed_and_marked_once_another_changes(studio, open_tab, tmp_path):
+    tab = open_tab(studio.address)
+    page = tab.page
+    tab.pressed()
+    page.locator("#along select").select_option(THICKNESS)
+    page.get_by_role("button", name="Press along it").click()
+    page.locator("#response summary").click()
+    tab.says("#response-tasks .state", "done in", 90.0)
+    found = points(tab)
+    assert [row[0] for row in found] == pytest.approx([0.3333, 0.3816, 0.4368, 0.5, 0.5724, 0.6552, 0.75], rel=1e-3)
+    page.locator("#response .line.estimate").wait_for(state="attached", timeout=60_000)
+    at = tomllib.loads(tab.text)
+    assert at["segment"]["medium1"]["thickness_mm"] == 0.5  # nothing was moved
+    text = tab.text.replace("thickness_mm = 0.5", f"thickness_mm = {found[0][0]}")
+    pressed = of_run(text, tmp_path).press()
+    expected = (pressed.open_circuit_voltage_V[-1], pressed.reaction_force_N[-1], pressed.film_charge_pC[-1])
+    assert found[0][1:] == pytest.approx(expected, rel=1e-3)
+    slide(tab, THICKNESS, 2)
+    page.locator("#before").wait_for()
+    assert page.locator("#response .before").count() == 0  # its own number
+    slide(tab, DEPTH, -2)
+    tab.says("#response .before", "Of a design before")
+    tab.pressed()
+    page.locator("#response .before button").click()
+    page.locator("#response-tasks button", has_text="Cancel").click()
+    tab.says("#response-tasks .state", "cancelled")
+    tab.pressed()
+
+
+def test_the_sliders_move_to_a_goal_whose_press_says_whether_it_is_met(studio, open_tab):
+    tab = open_tab(studio.address)
+    page = tab.page
+    tab.pressed()
+    slide(tab, DEPTH, 1)  # another design than that of the test before
+    tab.pressed()
+    volts = float(NUMBER.search(page.locator("#numbers dd").nth(2).inner_text())[0])
+    page.locator("#goal .target").fill(f"{1.1 * volts:.4g}")
+
+    before, seek, said = tab.text, page.locator("#goal > button"), page.locator("#said")
+
+    def is_moved():
+        if said.is_visible():  # the design is not checked yet, or its derivatives are to come
+            said.locator("button").click()
+            seek.click()
+        return "Moved:" in page.locator("#goal-found").inner_text()
+
+    seek.click()
+    until(is_moved, 60.0)
+    assert tab.text != before
+    page.locator("#goal-found", has_text=re.compile("the goal is (met|missed)")).wait_for(timeout=60_000)
+    page.locator("#undo").click()
+    until(lambda: tab.text == before)  # one step
+    tab.says("#goal-found", "The design has been changed since.")
+    page.locator("#goal .target").fill("100000")
+    page.locator("#goal > button").click()
+    tab.says("#goal-found", "Nothing was moved")
+    assert tab.text == before
