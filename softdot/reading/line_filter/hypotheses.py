@@ -1,13 +1,13 @@
 """The hypotheses with which a line begins, or a lost track is looked for, and how a hand moves."""
 
 from dataclasses import dataclass
-from itertools import product
 from math import exp, log, sqrt
 from typing import Any
 
 import numpy as np
 
 from foundation.arrays import Floats, Ints
+from softdot.reading.cells import KINDS_OF_CELL
 from softdot.reading.line_filter.beam import RARE_STEPS
 from softdot.reading.line_filter.givens import HandMotion
 from softdot.reading.line_filter.hypothesis_arrays import (
@@ -132,17 +132,22 @@ def early_settings(step_s: float, is_mirrored: bool) -> HandMotion:
 def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) -> Beam:
     """The array meets the first column of a line: of its cell the first or the second, any pattern but a blank."""
     entries = np.arange(NEAREST_MM, 0.5 * FARTHEST_SHARE * table.cell_pitch_mm, ENTRY_STEP_MM)
-    postures = list(product(_lateral_places(), range(2, len(YAWS_DEG) - 2, 2)))
-    rows, chosen, asides = [], [], []
-    for column, pattern in product((0, 1), range(1, 8)):
-        chance = log((FIRST_COLUMN if column == 0 else 1.0 - FIRST_COLUMN) / 7.0)
-        for entry, speed, ((aside, log_aside), yaw) in product(entries, _speeds(speed_mm_per_s), postures):
-            turned = -0.5 * (YAWS_DEG[yaw] / YAW_SPREAD_DEG) ** 2
-            rows.append((column_mm(table, column) - entry, speed, speed, chance + log_aside + turned))
-            chosen.append((FORTH, yaw, 1, column + 1, pattern))
-            asides.append(aside)
-    memory = _memory(np.array(asides), _channels(channels))
-    return Beam(np.array(rows), np.array(chosen, dtype=np.int64), memory)
+    speeds, asides = _speeds(speed_mm_per_s), _lateral_places()
+    yaws = np.arange(2, len(YAWS_DEG) - 2, 2)
+    column, pattern, entry, speed, aside, yaw = _every(2, 7, len(entries), len(speeds), len(asides), len(yaws))
+    first = np.log([FIRST_COLUMN / 7.0, (1.0 - FIRST_COLUMN) / 7.0])
+    turned = -0.5 * (YAWS_DEG[yaws] / YAW_SPREAD_DEG) ** 2
+    places = np.array([column_mm(table, number) for number in (0, 1)])
+    chance = first[column] + np.array([log_prior for _, log_prior in asides])[aside] + turned[yaw]
+    state = np.stack([places[column] - entries[entry], speeds[speed], speeds[speed], chance], axis=1)
+    ones = np.ones_like(column)
+    choice = np.stack([FORTH * ones, yaws[yaw], ones, column + 1, pattern + 1], axis=1)
+    return Beam(state, choice, _memory(np.array([own for own, _ in asides])[aside], _channels(channels)))
+
+
+def _every(*counts: int) -> Ints:
+    """All combinations (k, h) of numbers below k counts."""
+    return np.indices(counts).reshape(len(counts), -1)
 
 
 def _lateral_places() -> Asides:
@@ -206,21 +211,23 @@ def _anywhere(
     channels: Floats,
 ) -> Beam:
     """Hypotheses within half a cell of a place, with what a choice (5,) knows of the columns before, and its yaw."""
-    pitch = table.cell_pitch_mm
-    rows, chosen, own_asides = [], [], []
-    for place in middle_mm + np.arange(-0.5 * pitch, 0.5 * pitch, 0.15):
-        columns, seen = _with_unseen(known, _last_in_window(table, place))
-        for speed, (aside, log_aside), pattern in product(speeds, asides, range(64)):
-            rows.append((place, speed, speed, log_aside + _chance_of(pattern)))
-            own = columns & ~0xFF | pattern >> 3 | (pattern & 7) << 4
-            chosen.append((FORTH, known[YAW], 1, seen, own))
-            own_asides.append(aside)
-    memory = _memory(np.array(own_asides), channels)
-    return Beam(np.array(rows), np.array(chosen, dtype=np.int64), memory)
+    half = 0.5 * table.cell_pitch_mm
+    places = middle_mm + np.arange(-half, half, 0.15)
+    before = np.array([_with_unseen(known, _last_in_window(table, float(place))) for place in places], dtype=np.int64)
+    place, speed, aside, pattern = _every(len(places), len(speeds), len(asides), KINDS_OF_CELL)
+    chance = np.array([log_prior for _, log_prior in asides])[aside] + _log_chances()[pattern]
+    state = np.stack([places[place], speeds[speed], speeds[speed], chance], axis=1)
+    columns = before[place, 0] & ~0xFF | pattern >> 3 | (pattern & 7) << 4
+    ones = np.ones_like(place)
+    choice = np.stack([FORTH * ones, known[YAW] * ones, ones, before[place, 1], columns], axis=1)
+    return Beam(state, choice, _memory(np.array([own for own, _ in asides])[aside], channels))
 
 
-def _chance_of(pattern: int) -> float:
-    return sum(log(BLANK if column == 0 else (1.0 - BLANK) / 7.0) for column in (pattern & 7, pattern >> 3))
+def _log_chances() -> Floats:
+    """Log-probability (64,) of two columns where nothing is known."""
+    column = np.log([BLANK, *7 * [(1.0 - BLANK) / 7.0]])
+    pattern = np.arange(KINDS_OF_CELL)
+    return np.asarray(column[pattern & 7] + column[pattern >> 3])
 
 
 def _last_in_window(table: LineTable, place: float) -> int:
