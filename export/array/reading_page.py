@@ -40,7 +40,8 @@ SIGNALS_OF_EQUAL_LENGTH = {
 def write_reading_page(path: Path, reading: Mapping[str, Any], signals: Mapping[str, NDArray[Any]]) -> None:
     """Write the page of a reading, whole or not at all.
 
-    reading : the content of reading.json. Numbers may be None where there is none.
+    reading : the content of reading.json. Numbers may be None where there is none; without a true text there are no
+    rates.
     signals : time_s (t,), ascending; voltage_V (t, n) of the segments in the order of reading["kernel"]["labels"];
     position_mm (t,) of the middle of the array along the line; cell_x_mm (c,) of the middles of the cells; cell_true
     and cell_read (c,), strings, a question mark for one that is not certain; cell_likely and cell_probability (c,), the
@@ -50,6 +51,7 @@ def write_reading_page(path: Path, reading: Mapping[str, Any], signals: Mapping[
     InputError for signals that are missing, not finite, or of another shape.
     """
     _check_signals(reading, signals)
+    is_known, read = reading["text_true"] is not None, str(reading["text_read"])
     environment = page_environment(HERE)
     environment.filters.update(key_text=key_text, number=number, visible_text=_visible_text)
     script = (HERE / "reading.js").read_text("utf-8")
@@ -58,7 +60,8 @@ def write_reading_page(path: Path, reading: Mapping[str, Any], signals: Mapping[
         confused=_frequent_confusions(reading),
         most=MOST_CONFUSED,
         cells=_cell_texts(signals),
-        texts=text_differences(str(reading["text_true"]), str(reading["text_read"])),
+        texts=text_differences(str(reading["text_true"]) if is_known else read, read),
+        is_known=is_known,
         data=script_safe(json.dumps(player_data(reading, signals), allow_nan=False)),
         script=script,
         script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii"),
@@ -159,7 +162,7 @@ def _cell_texts(signals: Mapping[str, NDArray[Any]]) -> list[tuple[str, str, str
 
 def _frequent_confusions(reading: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     """Rows of the confusion matrix off its diagonal, most frequent first."""
-    wrong = [one for one in reading["confusion"] if one["true"] != one["read"] and one["count"]]
+    wrong = [one for one in reading.get("confusion", []) if one["true"] != one["read"] and one["count"]]
     return sorted(wrong, key=lambda one: -one["count"])
 
 

@@ -59,19 +59,21 @@ def _place_mm(reading: LineReading, pitch: float) -> Floats:
 
 
 def page_signals(reading: LineReading) -> dict[str, Any]:
-    """The arrays that the page of a reading plays (export.array.reading_page); the true cells must be known.
+    """The arrays that the page of a reading plays (export.array.reading_page).
 
-    The dots are those of the line, with their heights; of a recording those that the standard has for its cells.
+    The dots are those of the line, with their heights; of a recording those that the standard has for its cells, the
+    most likely ones where the true ones are not known.
     """
-    kept, true = signal_arrays(reading), reading.cells_true
-    assert true is not None
-    line = nominal_line(true, reading.reader.standard) if reading.line is None else reading.line
-    height = reading.reader.standard.nominal_mm("height_mm")
-    read = [braille([cell]) for cell in kept["cell_read"]]
-    first, partner = reading.first, _read_numbers(true, reading.first.cells)
+    kept, first = signal_arrays(reading), reading.first
+    stated = first.cells if reading.cells_true is None else reading.cells_true
+    partner = np.arange(len(stated)) if reading.cells_true is None else _read_numbers(stated, first.cells)
     unknown = np.full(len(first.cells), -1)
     likely = np.append(unknown if first.likely is None else first.likely, -1)[partner]
     probability = np.append(unknown if first.probability is None else first.probability, -1)[partner]
+    true = np.where(stated >= 0, stated, np.maximum(likely, 0))
+    line = nominal_line(true, reading.reader.standard) if reading.line is None else reading.line
+    height = reading.reader.standard.nominal_mm("height_mm")
+    read = [braille([cell]) for cell in kept["cell_read"]]
     number = np.arange(len(true))
     passed = np.isfinite(kept["read_time_s"])
     at = (

@@ -122,6 +122,17 @@ def test_the_result_is_told_without_javascript(tmp_path):
     assert unsure.count('class="unsure">') == 2  # and the text
 
 
+def test_a_line_that_nobody_knows_has_a_page_without_rates(tmp_path):
+    reading = reading_of(TRUE, "?" + TRUE[1:], text_true=None)
+    rates = ("character_accuracy", "word_accuracy", "confusion", "missed_dots", "false_dots", "decoders", "characters")
+    unknown = {key: value for key, value in reading.items() if key not in rates}
+    page = page_of(tmp_path, unknown, signals_of(TRUE, "?" + TRUE[1:]))
+    assert "<strong>24 cells</strong> were read, 23 of them certain. What the line says is not known." in page
+    assert '?<small><span class="aside"> not certain, most likely </span>(⠁)</small>' in page
+    assert "None" not in page
+    assert "correctly" not in page
+
+
 def test_words_of_a_user_are_text_and_nothing_is_loaded(tmp_path):
     bad = "<script>alert(1)</script>"
     reading = reading_of(TRUE, READ, text_true=bad, text_read=bad + "x", decoder=bad, warnings=[bad])
