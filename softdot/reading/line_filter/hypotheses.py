@@ -35,7 +35,7 @@ TURNS_PER_S, LIFTS_PER_S, TOUCHES_PER_S = 0.2, 0.2, 6.0
 """How often a hand stops and goes on, goes back and forth, turns by a step, loses and finds contact: all of this is
 assumed.
 """
-UNSEEN_SHARE = 0.6
+UNSEEN_SHARE = 1.0
 """Weight of a column that passes without contact, beside the patterns that it may have: assumed."""
 BLANK = 0.3
 """Share of blank columns where nothing is known."""
@@ -45,7 +45,7 @@ HEIGHT_MEAN, HEIGHT_SPREAD = 0.9, 0.25
 """Mean and standard deviation of what a dot gives over what a nominal one would, worn ones among them: assumed."""
 ROUGH_SHARE, DEGREES = 0.15, 4.0
 """Standard deviation of a charge over the charge, and degrees of freedom of Student's t."""
-KEPT_LOG, MOST_WEIGHED, MOST_KEPT, EARLY_KEPT = 11.0, 6000, 1500, 24_000
+KEPT_LOG, MOST_WEIGHED, MOST_KEPT, EARLY_KEPT, FIRST_KEPT = 11.0, 6000, 1500, 24_000, 4000
 SPEED_FACTOR, SPEEDS = 2.2, 7
 """Factor about a rough speed within which speeds are tried, and their number."""
 FARTHEST_SHARE, NEAREST_MM, ENTRY_STEP_MM = 1.4, 0.4, 0.3
@@ -56,9 +56,9 @@ FARTHEST_ASIDE_MM, ASIDE_SPREAD_MM = 2.4, 0.2
 """Lateral places with which a line begins, and the standard deviation of each: they are twice as far apart."""
 GAIN_SPREAD, LEAST_GAIN_SPREAD, GAIN_WALK = 0.2, 0.08, 0.02
 """Standard deviations of a gain at first and at least, and by how much it changes in the root of a second: assumed."""
-FIRST_GAINS = (1.0, 1.4)
+FIRST_GAINS, RARER_GAIN = (1.0, 1.4), 0.3
 """Common gains with which a line begins, over that of the first seconds, which hear too few dots for a large charge or
-pass them between two rows of segments.
+pass them between two rows of segments, and how often the second one beside the first: assumed.
 """
 ROW_BESIDE = 0.1
 """Share of lost tracks in which the array lay one row of dots farther than was thought, to each side: assumed."""
@@ -147,6 +147,7 @@ def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) 
     turned = -0.5 * (YAWS_DEG[yaws] / YAW_SPREAD_DEG) ** 2
     places = np.array([column_mm(table, number) for number in (0, 1)])
     chance = first[column] + np.array([log_prior for _, log_prior in asides])[aside] + turned[yaw]
+    chance = chance + log(RARER_GAIN) * gain
     state = np.stack([places[column] - entries[entry], speeds[speed], speeds[speed], chance], axis=1)
     ones = np.ones_like(column)
     choice = np.stack([FORTH * ones, yaws[yaw], ones, column + 1, pattern + 1], axis=1)
