@@ -45,7 +45,9 @@ HEIGHT_MEAN, HEIGHT_SPREAD = 0.9, 0.25
 """Mean and standard deviation of what a dot gives over what a nominal one would, worn ones among them: assumed."""
 ROUGH_SHARE, DEGREES = 0.15, 4.0
 """Standard deviation of a charge over the charge, and degrees of freedom of Student's t."""
-KEPT_LOG, MOST_WEIGHED, MOST_KEPT, EARLY_KEPT, FIRST_KEPT = 11.0, 6000, 1500, 24_000, 4000
+KEPT_LOG, MOST_WEIGHED, MOST_KEPT, EARLY_KEPT, FIRST_KEPT = 11.0, 6000, 1500, 12_000, 3000
+ALIKE = 8
+"""Least number of lateral places among the hypotheses with which a line begins."""
 SPEED_FACTOR, SPEEDS = 2.2, 7
 """Factor about a rough speed within which speeds are tried, and their number."""
 FARTHEST_SHARE, NEAREST_MM, ENTRY_STEP_MM = 1.4, 0.4, 0.3
@@ -117,6 +119,7 @@ def settings(step_s: float, is_mirrored: bool) -> HandMotion:
         kept_log=KEPT_LOG,
         most_weighed=MOST_WEIGHED,
         most_kept=MOST_KEPT,
+        most_alike=MOST_KEPT,
     )
 
 
@@ -133,7 +136,9 @@ def _blank_columns(is_mirrored: bool) -> Floats:
 def early_settings(step_s: float, is_mirrored: bool) -> HandMotion:
     """The motion over the first column: what is rare is left out, and more hypotheses are kept."""
     rare: dict[str, Any] = dict.fromkeys(("log_jump", "log_stop", "log_back", "log_turn", "log_lift"), -1e9)
-    return settings(step_s, is_mirrored)._replace(most_weighed=4 * EARLY_KEPT, most_kept=EARLY_KEPT, **rare)
+    return settings(step_s, is_mirrored)._replace(
+        most_weighed=4 * EARLY_KEPT, most_kept=EARLY_KEPT, most_alike=EARLY_KEPT // ALIKE, **rare
+    )
 
 
 def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) -> Beam:

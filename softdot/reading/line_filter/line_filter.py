@@ -10,7 +10,7 @@ from softdot.reading.cells import DOTS
 from softdot.reading.line_filter.beam import MOST_CHILDREN, RARE_STEPS, advance, weighed
 from softdot.reading.line_filter.evidence import predicted_charges
 from softdot.reading.line_filter.givens import HandMotion, Sensor
-from softdot.reading.line_filter.hypotheses import FIRST_KEPT, Beam, around, early_settings, settings
+from softdot.reading.line_filter.hypotheses import ALIKE, FIRST_KEPT, Beam, around, early_settings, settings
 from softdot.reading.line_filter.hypothesis_arrays import (
     COLUMNS,
     HEIGHT,
@@ -200,7 +200,9 @@ class LineFilter:
         if self._is_early:
             return self._early
         if self.columns_seen < BEGINNING_COLUMNS:
-            return self._settings._replace(most_weighed=4 * FIRST_KEPT, most_kept=FIRST_KEPT)
+            return self._settings._replace(
+                most_weighed=4 * FIRST_KEPT, most_kept=FIRST_KEPT, most_alike=FIRST_KEPT // ALIKE
+            )
         return self._settings
 
     def _level(self, memory: Floats) -> Floats:
