@@ -30,8 +30,8 @@ from softdot.reading.line_filter.hypothesis_arrays import (
     column_of,
     kind_before,
 )
-from softdot.reading.line_filter.lateral import LINE_A, WANDER, move_aside
-from softdot.reading.line_filter.merging import ASIDE_BIN_MM, merged
+from softdot.reading.line_filter.lateral import move_aside
+from softdot.reading.line_filter.merging import merged
 from solve.compiled import piece
 
 MOST_CHILDREN = 60_000
@@ -41,8 +41,6 @@ RARE_STEPS = 3
 """What a hand does rarely is tried in one of so many steps, as often as if it were tried in all of them."""
 CHANCE, CHANGE, NEW_WAY, TURN, CONTACT = range(5)
 """Columns of the ways in which a hypothesis may go on: log-probability, and what changes."""
-LATERAL_GROUPS = 18
-"""Lateral places of which each keeps hypotheses of its own where a line begins."""
 OLD_MM = 1.8
 """Way behind the array's middle at which a column that passed without contact is looked at no more."""
 
@@ -82,8 +80,6 @@ def advance(state, choice, memory, measured, temper, may_touch, turn, open_bits,
         made, made_choice, memory, before, parent, fresh, agreed, measured, temper, sensor, settings
     )  # fmt: skip
     best = _best_ones(weight, settings.kept_log, settings.most_kept)
-    if settings.most_alike < settings.most_kept:
-        best = _of_every_place(weight, best, learned[3], settings)
     chosen = agreed[best]
     kept_state, kept_choice, kept_memory = made[chosen], made_choice[chosen], memory[parent[chosen]]
     remember(kept_state, kept_choice, kept_memory, best, learned, temper, sensor, settings)
@@ -123,23 +119,6 @@ def _best_ones(weight, kept_log, most):  # type: ignore[no-untyped-def]
         rank = len(weight) - most
         least = max(least, np.partition(weight, rank)[rank])
     return np.flatnonzero(weight >= least)
-
-
-@nb.njit(cache=True)
-def _of_every_place(weight, best, aside, settings):  # type: ignore[no-untyped-def]
-    """Numbers of the best weights of each lateral place (k, 9), that none of these crowds out the others."""
-    every = _best_ones(weight, settings.kept_log, len(weight))
-    if len(every) == len(best):
-        return best
-    count, kept, number = np.zeros(LATERAL_GROUPS, dtype=np.int64), np.empty(len(every), dtype=np.int64), 0
-    for one in every[np.argsort(-weight[every])]:
-        place = aside[one, LINE_A] + aside[one, WANDER] + 0.5 * LATERAL_GROUPS * ASIDE_BIN_MM
-        group = min(max(int(place / ASIDE_BIN_MM), 0), LATERAL_GROUPS - 1)
-        if count[group] < settings.most_alike:
-            count[group] += 1
-            kept[number] = one
-            number += 1
-    return kept[:number]
 
 
 @nb.njit(cache=True)

@@ -34,8 +34,7 @@ class HandMotion(NamedTuple):
     the nominal charge. rough : standard deviation of a charge over the charge; degrees : of Student's t. fade : what
     is left of a wander across the line. gain_spread, least_gain_spread, gain_walk : variance of a gain at
     first, at least, and by which it may change. kept_log : how far behind the best hypotheses are kept; most_weighed,
-    most_kept : how many of them the charges weigh, and how many are left then; most_alike : of one lateral place, where
-    that is less.
+    most_kept : how many of them the charges weigh, and how many are left then.
     """
 
     step_s: float
@@ -65,4 +64,3 @@ class HandMotion(NamedTuple):
     kept_log: float
     most_weighed: int
     most_kept: int
-    most_alike: int

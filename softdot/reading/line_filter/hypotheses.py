@@ -35,7 +35,7 @@ TURNS_PER_S, LIFTS_PER_S, TOUCHES_PER_S = 0.2, 0.2, 6.0
 """How often a hand stops and goes on, goes back and forth, turns by a step, loses and finds contact: all of this is
 assumed.
 """
-UNSEEN_SHARE = 1.0
+UNSEEN_SHARE = 0.6
 """Weight of a column that passes without contact, beside the patterns that it may have: assumed."""
 BLANK = 0.3
 """Share of blank columns where nothing is known."""
@@ -45,9 +45,7 @@ HEIGHT_MEAN, HEIGHT_SPREAD = 0.9, 0.25
 """Mean and standard deviation of what a dot gives over what a nominal one would, worn ones among them: assumed."""
 ROUGH_SHARE, DEGREES = 0.15, 4.0
 """Standard deviation of a charge over the charge, and degrees of freedom of Student's t."""
-KEPT_LOG, MOST_WEIGHED, MOST_KEPT, EARLY_KEPT, FIRST_KEPT = 11.0, 6000, 1500, 12_000, 3000
-ALIKE = 8
-"""Least number of lateral places among the hypotheses with which a line begins."""
+KEPT_LOG, MOST_WEIGHED, MOST_KEPT, EARLY_KEPT = 11.0, 6000, 1500, 12_000
 SPEED_FACTOR, SPEEDS = 2.2, 7
 """Factor about a rough speed within which speeds are tried, and their number."""
 FARTHEST_SHARE, NEAREST_MM, ENTRY_STEP_MM = 1.4, 0.4, 0.3
@@ -58,10 +56,6 @@ FARTHEST_ASIDE_MM, ASIDE_SPREAD_MM = 2.4, 0.2
 """Lateral places with which a line begins, and the standard deviation of each: they are twice as far apart."""
 GAIN_SPREAD, LEAST_GAIN_SPREAD, GAIN_WALK = 0.2, 0.08, 0.02
 """Standard deviations of a gain at first and at least, and by how much it changes in the root of a second: assumed."""
-FIRST_GAINS, RARER_GAIN = (1.0, 1.4), 0.3
-"""Common gains with which a line begins, over that of the first seconds, which hear too few dots for a large charge or
-pass them between two rows of segments, and how often the second one beside the first: assumed.
-"""
 ROW_BESIDE = 0.1
 """Share of lost tracks in which the array lay one row of dots farther than was thought, to each side: assumed."""
 FIRST_COLUMN = 0.85
@@ -119,7 +113,6 @@ def settings(step_s: float, is_mirrored: bool) -> HandMotion:
         kept_log=KEPT_LOG,
         most_weighed=MOST_WEIGHED,
         most_kept=MOST_KEPT,
-        most_alike=MOST_KEPT,
     )
 
 
@@ -136,9 +129,7 @@ def _blank_columns(is_mirrored: bool) -> Floats:
 def early_settings(step_s: float, is_mirrored: bool) -> HandMotion:
     """The motion over the first column: what is rare is left out, and more hypotheses are kept."""
     rare: dict[str, Any] = dict.fromkeys(("log_jump", "log_stop", "log_back", "log_turn", "log_lift"), -1e9)
-    return settings(step_s, is_mirrored)._replace(
-        most_weighed=4 * EARLY_KEPT, most_kept=EARLY_KEPT, most_alike=EARLY_KEPT // ALIKE, **rare
-    )
+    return settings(step_s, is_mirrored)._replace(most_weighed=4 * EARLY_KEPT, most_kept=EARLY_KEPT, **rare)
 
 
 def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) -> Beam:
@@ -146,18 +137,15 @@ def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) 
     entries = np.arange(NEAREST_MM, 0.5 * FARTHEST_SHARE * table.cell_pitch_mm, ENTRY_STEP_MM)
     speeds, asides = _speeds(speed_mm_per_s), _lateral_places()
     yaws = np.arange(2, len(YAWS_DEG) - 2, 2)
-    counts = (2, 7, len(entries), len(speeds), len(asides), len(yaws), len(FIRST_GAINS))
-    column, pattern, entry, speed, aside, yaw, gain = _every(*counts)
+    column, pattern, entry, speed, aside, yaw = _every(2, 7, len(entries), len(speeds), len(asides), len(yaws))
     first = np.log([FIRST_COLUMN / 7.0, (1.0 - FIRST_COLUMN) / 7.0])
     turned = -0.5 * (YAWS_DEG[yaws] / YAW_SPREAD_DEG) ** 2
     places = np.array([column_mm(table, number) for number in (0, 1)])
     chance = first[column] + np.array([log_prior for _, log_prior in asides])[aside] + turned[yaw]
-    chance = chance + log(RARER_GAIN) * gain
     state = np.stack([places[column] - entries[entry], speeds[speed], speeds[speed], chance], axis=1)
     ones = np.ones_like(column)
     choice = np.stack([FORTH * ones, yaws[yaw], ones, column + 1, pattern + 1], axis=1)
-    known = np.array([_channels(channels, factor) for factor in FIRST_GAINS])
-    return Beam(state, choice, _memory(np.array([own for own, _ in asides])[aside], known[gain]))
+    return Beam(state, choice, _memory(np.array([own for own, _ in asides])[aside], _channels(channels)))
 
 
 def _every(*counts: int) -> Ints:
@@ -183,16 +171,14 @@ def _places_beside(aside: Floats, row_mm: float) -> Asides:
     return found
 
 
-def _channels(count: int, gain: float = 1.0) -> Floats:
-    """Level and rate of the drift, gain and its variance (4 n,) of channels of which nothing else is known."""
-    return np.concatenate([np.zeros(2 * count), np.full(count, gain), np.full(count, GAIN_SPREAD**2)])
+def _channels(count: int) -> Floats:
+    """Level and rate of the drift, gain and its variance (4 n,) of channels of which nothing is known."""
+    return np.concatenate([np.zeros(2 * count), np.ones(count), np.full(count, GAIN_SPREAD**2)])
 
 
 def _memory(asides: Floats, channels: Floats) -> Floats:
-    """Memories (h, 33 + 4 n) that know of no dot, with lateral places (h, 9) and what is known of channels (4 n,) or
-    (h, 4 n).
-    """
-    known = np.empty((len(asides), LEVEL + channels.shape[-1]))
+    """Memories (h, 33 + 4 n) that know of no dot, with lateral places (h, 9) and what is known of channels (4 n,)."""
+    known = np.empty((len(asides), LEVEL + len(channels)))
     known[:, HEIGHT:SPREAD], known[:, SPREAD:LATERAL] = HEIGHT_MEAN, HEIGHT_SPREAD**2
     known[:, LATERAL:LEVEL], known[:, LEVEL:] = asides, channels
     return known

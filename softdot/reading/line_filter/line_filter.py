@@ -9,8 +9,8 @@ from foundation.arrays import Floats
 from softdot.reading.cells import DOTS
 from softdot.reading.line_filter.beam import MOST_CHILDREN, RARE_STEPS, advance, weighed
 from softdot.reading.line_filter.evidence import predicted_charges
-from softdot.reading.line_filter.givens import HandMotion, Sensor
-from softdot.reading.line_filter.hypotheses import ALIKE, FIRST_KEPT, Beam, around, early_settings, settings
+from softdot.reading.line_filter.givens import Sensor
+from softdot.reading.line_filter.hypotheses import Beam, around, early_settings, settings
 from softdot.reading.line_filter.hypothesis_arrays import (
     COLUMNS,
     HEIGHT,
@@ -33,17 +33,15 @@ from softdot.reading.line_filter.hypothesis_arrays import (
 from softdot.reading.line_filter.lateral import LINE_A, WANDER
 from softdot.reading.line_filter.table import YAWS_DEG, LineTable
 
-LAG_COLUMNS, FIRST_COLUMNS, BEGINNING_COLUMNS = 4, 12, 5
-"""Columns that must follow a cell before it is given out, and least number of all: posture and heights come first; and
-columns until which more hypotheses are kept.
-"""
+LAG_COLUMNS, FIRST_COLUMNS = 4, 12
+"""Columns that must follow a cell before it is given out, and least number of all: posture and heights come first."""
 FLOOR_SHARE = 0.045
 """Standard deviation of a charge of none over the largest charge of one dot."""
 TOUCH_SHARE = 0.08
 """Share of the largest charge of one dot above which lost contact may be found again."""
 FIT_S = 0.2
 """Time over which the fit of the best hypothesis is averaged."""
-LOST_FIT, FOUND_FIT = 2.5, 1.5
+LOST_FIT, FOUND_FIT = 4.0, 2.0
 """Mean squared residuals in their variance above which a track is lost, and below which it is found again."""
 PATIENCE_S = 0.6
 """Time that a new start has before the next one."""
@@ -169,7 +167,7 @@ class LineFilter:
         state, choice, memory, evidence = advance(
             known.state, known.choice, known.memory, charge_pC, temper,
             bool(largest > TOUCH_SHARE * self.table.largest_pC), self._steps % RARE_STEPS, self._open_bits, self.sensor,
-            self._motion, self._room,
+            self._early if self._is_early else self._settings, self._room,
         )  # fmt: skip
         self._steps += 1
         self._is_early = self._is_early and self._steps < EARLY_STEPS and largest < EARLY_SHARE * self.table.largest_pC
@@ -193,17 +191,6 @@ class LineFilter:
         """Gain (n,) of each channel of the most likely hypothesis over that of the first seconds."""
         count = self.table.lone.shape[-1]
         return self.hypotheses.memory[self._best, LEVEL + 2 * count : LEVEL + 3 * count]
-
-    @property
-    def _motion(self) -> HandMotion:
-        """The motion of a step; over the first columns more hypotheses are kept."""
-        if self._is_early:
-            return self._early
-        if self.columns_seen < BEGINNING_COLUMNS:
-            return self._settings._replace(
-                most_weighed=4 * FIRST_KEPT, most_kept=FIRST_KEPT, most_alike=FIRST_KEPT // ALIKE
-            )
-        return self._settings
 
     def _level(self, memory: Floats) -> Floats:
         """The drift (n,) of each channel in a memory."""
