@@ -13,10 +13,11 @@ function softdotReading(root, data) {
   const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
   const dark = window.matchMedia("(prefers-color-scheme: dark)");
   const half = [0, 1].map((axis) => Math.max(...data.centres.map((at) => Math.abs(at[axis]))) + data.size[axis] / 2);
+  const live = find(".said"), sound = find(".sound"), unsure = cells.map((cell) => cell.classList.contains("unsure"));
   const pace = reads.length > 1 ? (reads[reads.length - 1] - reads[0]) / (reads.length - 1) : (end - begin) / 10;
   const least = Math.min(0, low.reduce((a, b) => Math.min(a, b), 0)) * unit, most = high.reduce((a, b) => Math.max(a, b), 0) * unit;
   const scale = data.top < 1 ? 1000 : 1, word = data.top < 1 ? "mV" : "V";
-  const state = { now: begin, shown: cells.length, playing: false, tick: 0, colours: {} };
+  const state = { now: begin, shown: cells.length, playing: false, tick: 0, colours: {}, audio: null };
 
   // Number of entries of an ascending list that are at most a value.
   function before(list, value) {
@@ -49,7 +50,7 @@ function softdotReading(root, data) {
 
   function learnColours() {
     const style = getComputedStyle(document.documentElement);
-    for (const name of ["ink", "soft", "line", "card", "red", "plus", "minus", "dot", "accent"]) {
+    for (const name of ["ink", "soft", "line", "card", "red", "amber", "plus", "minus", "dot", "accent"]) {
       state.colours[name] = style.getPropertyValue("--" + name).trim();
     }
   }
@@ -112,15 +113,21 @@ function softdotReading(root, data) {
     pen.fillText(words, x, y);
   }
 
+  // The cell that was read, and below it a bar that is as full as the decoder is certain.
   function drawRead(pen, colours, x, y, k, font) {
     const wrong = cells[k].classList.contains("wrong");
     pen.font = (wrong ? "bold " : "") + font;
-    pen.fillStyle = wrong ? colours.red : colours.ink;
+    pen.fillStyle = wrong ? colours.red : unsure[k] ? colours.amber : colours.ink;
     pen.fillText(said[k] + (wrong ? " ✗" : ""), x, y);
+    if (!data.certain || data.certain[k] < 0) return;
+    pen.strokeStyle = colours.soft;
+    pen.lineWidth = 1;
+    pen.strokeRect(x - 12.5, y + 5.5, 25, 4);
+    pen.fillRect(x - 12.5, y + 5.5, 25 * data.certain[k], 4);
   }
 
   function drawLine() {
-    const colours = state.colours, tall = 2 * half[1], spare = 30;
+    const colours = state.colours, tall = 2 * half[1], spare = 38;
     const size = Math.max(6, Math.min(22, state.width / (2 * half[0] + 12)));
     const height = Math.round((tall + 2.5) * size + spare), middle = (height - spare) / 2;
     const [pen, width] = cleared(line, height), here = place(), across = width / 2 / size;
@@ -131,7 +138,7 @@ function softdotReading(root, data) {
     for (let channel = 0; channel < channels; channel++) drawSegment(pen, colours, channel, at, size, here);
     for (let k = 0; k < data.cellX.length; k++) {
       if (reads[k] > state.now || Math.abs(data.cellX[k] - here) > across + 3) continue;
-      drawRead(pen, colours, at(data.cellX[k], 0)[0], height - 9, k, "20px 'DejaVu Sans', 'Apple Braille', 'Segoe UI Symbol', sans-serif");
+      drawRead(pen, colours, at(data.cellX[k], 0)[0], height - 15, k, "20px 'DejaVu Sans', 'Apple Braille', 'Segoe UI Symbol', sans-serif");
     }
     if (!state.playing) line.setAttribute("aria-label", "The line of dots under the array, whose middle is at " + here.toFixed(1) + " mm; "
       + data.labels.map((label, k) => label + " " + number(present(k)) + " " + word).join(", "));
@@ -167,8 +174,18 @@ function softdotReading(root, data) {
     pen.stroke();
   }
 
+  // The place of the array's middle along the line, from the least to the largest one that is seen.
+  function drawCourse(pen, x, from, to, top, lane) {
+    const first = Math.max(0, before(time, from) - 1), last = Math.min(count - 1, before(time, to) - 1);
+    let [near, far] = [Infinity, -Infinity];
+    for (let k = first; k <= last; k++) [near, far] = [Math.min(near, position[k]), Math.max(far, position[k])];
+    pen.beginPath();
+    for (let k = first; k <= last; k++) pen.lineTo(x(time[k]), top + lane * (0.92 - (0.84 * (position[k] - near)) / (far - near || 1)));
+    pen.stroke();
+  }
+
   function drawTraces() {
-    const colours = state.colours, lane = channels > 12 ? 22 : 42, height = channels * lane + 26, gutter = 52;
+    const colours = state.colours, lane = channels > 12 ? 22 : 42, height = (channels + 1) * lane + 26, gutter = 52;
     const [pen, width] = cleared(traces, height), span = pace * Math.max(4, width / 90);
     const from = state.now - 0.9 * span, to = from + span, right = width - 6;
     const x = (seconds) => gutter + ((seconds - from) / span) * (right - gutter);
@@ -190,6 +207,14 @@ function softdotReading(root, data) {
       pen.textAlign = "left";
       pen.fillText(data.labels[channel], 10, lower - 0.44 * lane + 4);
     }
+    pen.save();
+    pen.beginPath();
+    pen.rect(gutter, 0, right - gutter, height);
+    pen.clip();
+    pen.strokeStyle = colours.accent;
+    drawCourse(pen, x, from, state.now, 4 + channels * lane, lane);
+    pen.restore();
+    pen.fillText("place", 10, 4 + (channels + 0.5) * lane + 4);
     pen.fillStyle = colours.ink;
     pen.fillRect(x(state.now), 4, 1.5, height - 26);
   }
@@ -197,7 +222,42 @@ function softdotReading(root, data) {
   function appear() {
     const shown = before(reads, state.now);
     for (let k = Math.min(shown, state.shown); k < Math.max(shown, state.shown); k++) cells[k].classList.toggle("unread", k >= shown);
+    if (shown === state.shown + 1 && sound.checked) hear(shown - 1);
     state.shown = shown;
+  }
+
+  // Numbers of the raised dots of the cell that was read.
+  function dotsOf(k) {
+    const bits = said[k].codePointAt(0) - 0x2800;
+    return bits > 0 && bits < 64 ? [1, 2, 3, 4, 5, 6].filter((dot) => (bits >> (dot - 1)) & 1) : [];
+  }
+
+  function tone(hertz, after, kind) {
+    const audio = state.audio, source = audio.createOscillator(), level = audio.createGain(), at = audio.currentTime + after;
+    source.type = kind;
+    source.frequency.value = hertz;
+    level.gain.setValueAtTime(0.08, at);
+    level.gain.exponentialRampToValueAtTime(0.001, at + 0.11);
+    source.connect(level).connect(audio.destination);
+    source.start(at);
+    source.stop(at + 0.12);
+  }
+
+  // The dots of a cell as notes, upper ones higher, the left column first; a cell that is not certain as a low buzz.
+  function hear(k) {
+    state.audio = state.audio || new AudioContext();
+    if (unsure[k]) tone(98, 0, "square");
+    for (const dot of dotsOf(k)) tone([784, 587, 440][(dot - 1) % 3], dot > 3 ? 0.07 : 0, "sine");
+  }
+
+  // What a reader of the screen says of the cell that was read last.
+  function tell() {
+    const k = state.shown - 1;
+    if (k < 0) return void (live.textContent = "");
+    const dots = dotsOf(k).join(" "), sure = data.certain ? data.certain[k] : -1;
+    const what = unsure[k] ? "not certain" : dots ? "dots " + dots : "blank";
+    live.textContent = "Cell " + (k + 1) + " of " + cells.length + ": " + what + (cells[k].classList.contains("wrong") ? ", wrong" : "")
+      + (sure >= 0 ? ", probability " + (100 * sure).toFixed(1) + " %" : "");
   }
 
   function draw() {
@@ -255,6 +315,7 @@ function softdotReading(root, data) {
   line.addEventListener("keydown", (event) => {
     if (!keys[event.key]) return;
     keys[event.key]();
+    if (!state.playing) tell();
     event.preventDefault();
   });
   play.addEventListener("click", toggle);

@@ -31,7 +31,7 @@ FULL_SCALE = 32767
 MOST_CONFUSED = 24
 SIGNALS_OF_EQUAL_LENGTH = {
     "t": ("time_s", "position_mm"),
-    "c": ("cell_x_mm", "cell_true", "cell_read", "read_time_s"),
+    "c": ("cell_x_mm", "cell_true", "cell_read", "cell_likely", "cell_probability", "read_time_s"),
     "m": ("dot_x_mm", "dot_y_mm", "dot_height_mm"),
 }
 """Signals that are as long as each other."""
@@ -40,14 +40,18 @@ SIGNALS_OF_EQUAL_LENGTH = {
 def write_reading_page(path: Path, reading: Mapping[str, Any], signals: Mapping[str, NDArray[Any]]) -> None:
     """Write the page of a reading, whole or not at all.
 
-    reading : the content of reading.json. Numbers may be None where there is none.
+    reading : the content of reading.json. Numbers may be None where there is none; without a true text there are no
+    rates.
     signals : time_s (t,), ascending; voltage_V (t, n) of the segments in the order of reading["kernel"]["labels"];
     position_mm (t,) of the middle of the array along the line; cell_x_mm (c,) of the middles of the cells; cell_true
-    and cell_read (c,), strings; read_time_s (c,), when each was decided, ascending; dot_x_mm, dot_y_mm, dot_height_mm
-    (m,) of all dots, y counting down the rows from the middle of the array, as the rows of the array do.
+    and cell_read (c,), strings, a question mark for one that is not certain; cell_likely and cell_probability (c,), the
+    most likely one and how likely it is, empty and -1 where that is not known; read_time_s (c,), when each was decided,
+    ascending; dot_x_mm, dot_y_mm, dot_height_mm (m,) of all dots, y counting down the rows from the middle of the
+    array, as the rows of the array do.
     InputError for signals that are missing, not finite, or of another shape.
     """
     _check_signals(reading, signals)
+    is_known, read = reading["text_true"] is not None, str(reading["text_read"])
     environment = page_environment(HERE)
     environment.filters.update(key_text=key_text, number=number, visible_text=_visible_text)
     script = (HERE / "reading.js").read_text("utf-8")
@@ -56,7 +60,8 @@ def write_reading_page(path: Path, reading: Mapping[str, Any], signals: Mapping[
         confused=_frequent_confusions(reading),
         most=MOST_CONFUSED,
         cells=_cell_texts(signals),
-        texts=text_differences(str(reading["text_true"]), str(reading["text_read"])),
+        texts=text_differences(str(reading["text_true"]) if is_known else read, read),
+        is_known=is_known,
         data=script_safe(json.dumps(player_data(reading, signals), allow_nan=False)),
         script=script,
         script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii"),
@@ -136,6 +141,7 @@ def player_data(reading: Mapping[str, Any], signals: Mapping[str, NDArray[Any]])
         "dot": {"base": kernel["dot"]["base_diameter_mm"], "height": kernel["dot"]["height_mm"]},
         "dots": [_rounded_list(np.asarray(signals[name])[order]) for name in SIGNALS_OF_EQUAL_LENGTH["m"]],
         "cellX": _rounded_list(signals["cell_x_mm"]),
+        "certain": _rounded_list(signals["cell_probability"]) if np.any(signals["cell_probability"] >= 0.0) else None,
         "readTime": _rounded_list(signals["read_time_s"]),
     }
 
@@ -148,15 +154,15 @@ def _rounded_list(values: Any) -> Any:
     return np.round(np.asarray(values, np.float64), 4).tolist()
 
 
-def _cell_texts(signals: Mapping[str, NDArray[Any]]) -> list[tuple[str, str]]:
-    """True and read character of each cell; a blank cell as a character that can be seen."""
-    pairs = zip(signals["cell_true"], signals["cell_read"], strict=True)
-    return [(_visible_text(str(true)), _visible_text(str(read))) for true, read in pairs]
+def _cell_texts(signals: Mapping[str, NDArray[Any]]) -> list[tuple[str, str, str]]:
+    """True, read and most likely character of each cell; a blank cell as a character that can be seen."""
+    rows = zip(signals["cell_true"], signals["cell_read"], signals["cell_likely"], strict=True)
+    return [(_visible_text(str(true)), _visible_text(str(read)), str(likely)) for true, read, likely in rows]
 
 
 def _frequent_confusions(reading: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     """Rows of the confusion matrix off its diagonal, most frequent first."""
-    wrong = [one for one in reading["confusion"] if one["true"] != one["read"] and one["count"]]
+    wrong = [one for one in reading.get("confusion", []) if one["true"] != one["read"] and one["count"]]
     return sorted(wrong, key=lambda one: -one["count"])
 
 

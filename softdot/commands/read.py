@@ -99,7 +99,7 @@ def _words(language: str, table: str | None, decoders: list[str]) -> Words:
 
 
 def _write_reading(reading: LineReading, summary: dict[str, Any], folder: Path) -> None:
-    """All files of a reading; the page only where the true cells are known."""
+    """All files of a reading."""
     import numpy as np
 
     from export.array.reading_page import write_reading_page
@@ -110,8 +110,7 @@ def _write_reading(reading: LineReading, summary: dict[str, Any], folder: Path) 
     with (folder / "signals.npz").open("wb") as file:
         np.savez_compressed(file, **arrays)  # type: ignore[arg-type]
     draw_signals(arrays, reading.reader.kernel.about["labels"], folder / "signals.png")
-    if reading.cells_true is not None:
-        write_reading_page(folder / "report.html", summary, page_signals(reading))
+    write_reading_page(folder / "report.html", summary, page_signals(reading))
     write_json(folder / READING.summary, summary)
 
 
@@ -301,8 +300,7 @@ def short_text(summary: dict[str, Any], output: str) -> str:
             )
     if summary["words_per_minute"] is not None:
         lines.append(f"{summary['words_per_minute']:.3g} words a minute, {summary['cells_per_s']:.3g} cells a second")
-    page = "signals.png" if summary["text_true"] is None else "report.html"
-    return "\n".join([*lines, f"{output}/{page}"])
+    return "\n".join([*lines, f"{output}/report.html"])
 
 
 def _limits_text(summary: dict[str, Any], output: str) -> str:

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from foundation.arrays import Floats
+from foundation.arrays import Floats, Ints
 from softdot.reading.cells import braille
 from softdot.reading.decoders.fitted import Track
 from softdot.reading.decoders.hand import HandTrack
@@ -23,11 +23,9 @@ def signal_arrays(reading: LineReading) -> dict[str, Floats]:
     if true is None:
         read, at, known = first.cells, first.passed_s, np.full(len(first.cells), -1)
     else:
-        pairs = align([int(one) for one in true], [int(one) for one in first.cells])
-        partner = {i: j for i, j in pairs if i is not None and j is not None}
-        read = np.array([first.cells[partner[i]] if i in partner else -1 for i in range(len(true))])
-        passed = [first.passed_s[partner[i]] if i in partner else np.nan for i in range(len(true))]
-        at, known = np.array(passed) if reading.path is None else reading.path.reached_s, true
+        number = _read_numbers(true, first.cells)
+        read, passed = (np.append(row, missed)[number] for row, missed in ((first.cells, -1), (first.passed_s, np.nan)))
+        at, known = passed if reading.path is None else reading.path.reached_s, true
     return {
         "time_s": heard.time_s,
         "voltage_V": heard.voltage_V,
@@ -37,6 +35,13 @@ def signal_arrays(reading: LineReading) -> dict[str, Floats]:
         "cell_read": np.asarray(read, dtype=np.int64),
         "read_time_s": np.asarray(at, dtype=np.float64),
     }
+
+
+def _read_numbers(true: Ints, read: Ints) -> Ints:
+    """Number of the read cell of each true one (c,); -1 where it was missed."""
+    pairs = align([int(one) for one in true], [int(one) for one in read])
+    partner = {i: j for i, j in pairs if i is not None and j is not None}
+    return np.array([partner.get(i, -1) for i in range(len(true))], dtype=np.int64)
 
 
 def _place_mm(reading: LineReading, pitch: float) -> Floats:
@@ -54,12 +59,18 @@ def _place_mm(reading: LineReading, pitch: float) -> Floats:
 
 
 def page_signals(reading: LineReading) -> dict[str, Any]:
-    """The arrays that the page of a reading plays (export.array.reading_page); the true cells must be known.
+    """The arrays that the page of a reading plays (export.array.reading_page).
 
-    The dots are those of the line, with their heights; of a recording those that the standard has for its cells.
+    The dots are those of the line, with their heights; of a recording those that the standard has for its cells, the
+    most likely ones where the true ones are not known.
     """
-    kept, true = signal_arrays(reading), reading.cells_true
-    assert true is not None
+    kept, first = signal_arrays(reading), reading.first
+    stated = first.cells if reading.cells_true is None else reading.cells_true
+    partner = np.arange(len(stated)) if reading.cells_true is None else _read_numbers(stated, first.cells)
+    unknown = np.full(len(first.cells), -1)
+    likely = np.append(unknown if first.likely is None else first.likely, -1)[partner]
+    probability = np.append(unknown if first.probability is None else first.probability, -1)[partner]
+    true = np.where(stated >= 0, stated, np.maximum(likely, 0))
     line = nominal_line(true, reading.reader.standard) if reading.line is None else reading.line
     height = reading.reader.standard.nominal_mm("height_mm")
     read = [braille([cell]) for cell in kept["cell_read"]]
@@ -75,6 +86,8 @@ def page_signals(reading: LineReading) -> dict[str, Any]:
         "cell_x_mm": kept["x_mm"],
         "cell_true": np.array([braille([cell]) for cell in true]),
         "cell_read": np.array(read),
+        "cell_likely": np.array([braille([int(cell)]) if cell >= 0 else "" for cell in likely]),
+        "cell_probability": probability.astype(np.float64),
         "read_time_s": np.maximum.accumulate(at),
         "dot_x_mm": line.x_mm,
         "dot_y_mm": line.y_mm,

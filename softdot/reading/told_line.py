@@ -20,6 +20,7 @@ def line_content(track: HandTrack) -> dict[str, Any]:
         "begin_s": report.begin_s,
         "hum_Hz": report.hum_Hz,
         "gain": report.gain,
+        "width": report.width,
         "dead_channels": list(report.dead),
         "noise_mV": 1e3 * report.noise_V,
         "resting_mV": 1e3 * report.resting_V,

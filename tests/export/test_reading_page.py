@@ -33,7 +33,7 @@ def reading_of(true, read, **changes):
         "text_true": true,
         "text_read": read,
         "cells_true": "".join(map(LETTERS.get, true)),
-        "cells_read": "".join(map(LETTERS.get, read)),
+        "cells_read": "".join(LETTERS.get(one, one) for one in read),
         "characters": len(true),
         "character_accuracy": RATE_OF,
         "word_accuracy": {"value": 0.5, "low": 0.0945, "high": 0.9055},
@@ -86,7 +86,9 @@ def signals_of(true, read, rate=RATE):
         "position_mm": position,
         "cell_x_mm": cell_x,
         "cell_true": np.array([LETTERS[one] for one in true]),
-        "cell_read": np.array([LETTERS[one] for one in read]),
+        "cell_read": np.array([LETTERS.get(one, one) for one in read]),
+        "cell_likely": np.array([LETTERS[one] for one in true]),
+        "cell_probability": np.linspace(0.5, 1.0, len(true)),
         "read_time_s": (cell_x + 1.5 * CELL) / SPEED,
         "dot_x_mm": place[:, 0],
         "dot_y_mm": place[:, 1],
@@ -115,6 +117,20 @@ def test_the_result_is_told_without_javascript(tmp_path):
     assert '<tr><td class="words cell">⠁</td><td class="words cell">⠃</td><td>3</td></tr>' in page
     assert '<td class="words cell">⠁</td><td class="words cell">⠁</td>' not in page  # that was no confusion
     assert "<td>0</td><td>3</td><td>0</td>" in page  # false dots
+    unsure = page_of(tmp_path, reading_of(TRUE, "?" + READ[1:]), signals_of(TRUE, "?" + READ[1:]))
+    assert '<span class="unsure">?<small><span class="aside"> not certain, most likely ⠁, was </span>(⠁)' in unsure
+    assert unsure.count('class="unsure">') == 2  # and the text
+
+
+def test_a_line_that_nobody_knows_has_a_page_without_rates(tmp_path):
+    reading = reading_of(TRUE, "?" + TRUE[1:], text_true=None)
+    rates = ("character_accuracy", "word_accuracy", "confusion", "missed_dots", "false_dots", "decoders", "characters")
+    unknown = {key: value for key, value in reading.items() if key not in rates}
+    page = page_of(tmp_path, unknown, signals_of(TRUE, "?" + TRUE[1:]))
+    assert "<strong>24 cells</strong> were read, 23 of them certain. What the line says is not known." in page
+    assert '?<small><span class="aside"> not certain, most likely </span>(⠁)</small>' in page
+    assert "None" not in page
+    assert "correctly" not in page
 
 
 def test_words_of_a_user_are_text_and_nothing_is_loaded(tmp_path):
@@ -154,6 +170,7 @@ def test_numbers_of_the_player_are_the_signals():
     assert data["high"] is None
     np.testing.assert_allclose(low.T * data["top"] / 32767, signals["voltage_V"], atol=data["top"] / 32767)
     assert data["labels"][1] == "r1c2"
+    np.testing.assert_allclose(data["certain"], np.linspace(0.5, 1.0, len(TRUE)), atol=1e-4)
     assert data["dots"][0] == sorted(data["dots"][0])
 
 
@@ -211,6 +228,8 @@ def test_it_plays_and_is_scrubbed_by_keys(page_at):
     page.keyboard.press("ArrowLeft")
     assert seen(page) == 4
     assert "cells" in page.locator(".scrub").get_attribute("aria-valuetext")
+    assert page.locator(".said").text_content() == "Cell 4 of 24: dots 1 3 5, probability 56.5 %"
+    page.get_by_label("Sound").check()
     picture = page.locator(".line").screenshot()
     page.get_by_label("Speed").select_option("20")
     page.get_by_role("button", name="Play").click()

@@ -73,44 +73,50 @@ def advance(state, choice, memory, measured, temper, may_touch, turn, open_bits,
             )  # fmt: skip
             for child in range(begin, count):
                 parent[child] = h
-    agreed = merged(made, made_choice, memory, parent, count, top, open_bits)
+    agreed = merged(made, made_choice, memory, parent, count, top, open_bits, sensor.silent_mm)
     before = state[:, PLACE]
-    weight = _weigh(made, made_choice, memory, before, parent, fresh, agreed, measured, temper, sensor, settings)
-    chosen = agreed[_best_ones(weight, settings)]
+    agreed = agreed[_best_ones(made[agreed, LOG_WEIGHT], settings.kept_log, settings.most_weighed)]
+    weight, learned = _weigh(
+        made, made_choice, memory, before, parent, fresh, agreed, measured, temper, sensor, settings
+    )  # fmt: skip
+    best = _best_ones(weight, settings.kept_log, settings.most_kept)
+    chosen = agreed[best]
     kept_state, kept_choice, kept_memory = made[chosen], made_choice[chosen], memory[parent[chosen]]
-    own = before[parent[chosen]]
-    remember(kept_state, kept_choice, kept_memory, own, fresh[chosen], measured, temper, sensor, settings)
+    remember(kept_state, kept_choice, kept_memory, best, learned, temper, sensor, settings)
     return kept_state, kept_choice, kept_memory, _log_sum(kept_state[:, LOG_WEIGHT]) - _log_sum(state[:, LOG_WEIGHT])
 
 
 @nb.njit(cache=True)
 def _weigh(made, made_choice, memory, before, parent, fresh, agreed, measured, temper, sensor, settings):  # type: ignore[no-untyped-def]
-    """Add the evidence of charges (n,) to the weights of children that stand for others (k,), and return these (k,).
+    """Add the evidence of charges (n,) to the weights of children that stand for others (k,), and return these (k,)
+    with what the charges taught each: number of dots (k,), these (k, 4, 6), channels (k, 3, n), lateral place (k, 9).
 
     before : places along the line of their parents.
     """
-    found, channel, aside = np.empty((4, 2 * ROWS)), np.empty((3, measured.shape[0])), np.empty(9)
-    weight = np.empty(len(agreed))
-    for k in range(len(agreed)):
+    many = len(agreed)
+    weight, dots = np.empty(many), np.empty(many, dtype=np.int64)
+    found, channel = np.empty((many, 4, 2 * ROWS)), np.empty((many, 3, measured.shape[0]))
+    aside = np.empty((many, 9))
+    for k in range(many):
         child = agreed[k]
         own = parent[child]
         row, first, pattern = pattern_of(made[child, PLACE], made_choice, child, sensor)
-        dots = take_heights(memory, own, first, pattern, fresh[child], settings, found)
-        move_aside(memory, own, made[child, PLACE] - before[own], settings.fade, aside)
+        dots[k] = take_heights(memory, own, first, pattern, fresh[child], settings, found[k])
+        move_aside(memory, own, made[child, PLACE] - before[own], settings.fade, aside[k])
         at = (made_choice[child, YAW], row)
         made[child, LOG_WEIGHT] += log_evidence(
-            memory, own, at, pattern, found, dots, aside, measured, temper, sensor, settings, channel
+            memory, own, at, pattern, found[k], dots[k], aside[k], measured, temper, sensor, settings, channel[k]
         )  # fmt: skip
         weight[k] = made[child, LOG_WEIGHT]
-    return weight
+    return weight, (dots, found, channel, aside)
 
 
 @nb.njit(cache=True)
-def _best_ones(weight, settings):  # type: ignore[no-untyped-def]
-    """Numbers of the weights that are near enough to the best, and not more than may be kept."""
-    least = weight.max() - settings.kept_log
-    if len(weight) > settings.most_kept:
-        rank = len(weight) - settings.most_kept
+def _best_ones(weight, kept_log, most):  # type: ignore[no-untyped-def]
+    """Numbers of the weights that are within a logarithm of the best, and about as many of the best as may be kept."""
+    least = weight.max() - kept_log
+    if len(weight) > most:
+        rank = len(weight) - most
         least = max(least, np.partition(weight, rank)[rank])
     return np.flatnonzero(weight >= least)
 
@@ -120,8 +126,8 @@ def weighed(state, choice, memory, measured, sensor, settings):  # type: ignore[
     """Beam after they were weighed by the charges measured (n,), without a motion."""
     made, every = state.copy(), np.arange(len(state))
     known = np.zeros(len(state), dtype=np.int64)
-    weight = _weigh(made, choice, memory, state[:, PLACE], every, known, every, measured, 1.0, sensor, settings)
-    chosen = _best_ones(weight, settings)
+    weight, _ = _weigh(made, choice, memory, state[:, PLACE], every, known, every, measured, 1.0, sensor, settings)
+    chosen = _best_ones(weight, settings.kept_log, settings.most_kept)
     return made[chosen], choice[chosen], memory[chosen]
 
 

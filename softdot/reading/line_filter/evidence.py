@@ -21,7 +21,6 @@ from softdot.reading.line_filter.lateral import (
     LINE_A,
     WANDER,
     lateral_place,
-    move_aside,
     place_spread,
     see,
     table_offset,
@@ -83,7 +82,7 @@ def log_evidence(memory, h, at, pattern, found, count, aside, measured, temper, 
     for k in range(count):
         mean += found[1, k]
     mean = mean / count if count else 0.0
-    widths, spreads, tails = 1.0, 1.0, 1.0
+    widths, wholes, tails = 1.0, 1.0, 1.0
     for j in range(channels):
         rest = measured[j] - memory[h, LEVEL + j] - settings.step_s * memory[h, LEVEL + channels + j]
         gain, gain_spread = memory[h, LEVEL + 2 * channels + j], memory[h, LEVEL + 3 * channels + j]
@@ -107,20 +106,23 @@ def log_evidence(memory, h, at, pattern, found, count, aside, measured, temper, 
         per_gain = (charge + more) / gain
         variance = sensor.floor_pC2[j] + (settings.rough * (charge + more)) ** 2
         whole = variance + temper * (spread + slope * slope * place_spread(aside) + per_gain * per_gain * gain_spread)
-        unit = residual * residual / (settings.degrees * whole)
+        sharp = 1.0 / whole
+        unit = 1.0 + residual * residual * sharp / settings.degrees
         widths *= variance
-        spreads *= whole / variance
-        tails *= 1.0 + unit
-        believed = min(1.0, (1.0 + 1.0 / settings.degrees) / (1.0 + unit)) * residual
+        wholes *= whole
+        tails *= unit
+        believed = min(1.0, (1.0 + 1.0 / settings.degrees) / unit) * residual
+        sharp *= temper
         for k in range(count):
-            own = found[3, k] * found[2, k] * temper / whole
+            own = found[3, k] * found[2, k] * sharp
             found[1, k] += own * believed
             found[2, k] = max(found[2, k] * (1.0 - own * found[3, k]), LEAST_SPREAD)
-        own = per_gain * gain_spread * temper / whole
+        own = per_gain * gain_spread * sharp
         channel[1, j] = min(max(gain + own * believed, 1.0 / WIDEST_GAIN), WIDEST_GAIN)
         channel[2, j] = max(gain_spread * (1.0 - own * per_gain), settings.least_gain_spread)
-        see(aside, temper * slope / whole, believed, slope)
-    return -0.5 * temper * (np.log(widths) + (settings.degrees + 1.0) * np.log(tails)) - 0.5 * np.log(spreads)
+        see(aside, slope * sharp, believed, slope)
+    of_widths = np.log(widths)
+    return 0.5 * ((1.0 - temper) * of_widths - temper * (settings.degrees + 1.0) * np.log(tails) - np.log(wholes))
 
 
 @piece()
@@ -138,22 +140,18 @@ def pattern_of(place, choice, h, sensor):  # type: ignore[no-untyped-def]
 
 
 @nb.njit(cache=True)
-def remember(state, choice, memory, before, fresh, measured, temper, sensor, settings):  # type: ignore[no-untyped-def]
+def remember(state, choice, memory, chosen, learned, temper, sensor, settings):  # type: ignore[no-untyped-def]
     """Move the memories (h, 33 + 4 n) on: heights, lateral place, gains, and the drift by a steady filter.
 
-    before (h,) : the places along the line that the memories are of.
+    chosen (h,) : which of what the charges taught the hypotheses belongs to each (softdot.reading.line_filter.beam).
     """
-    channels = measured.shape[0]
-    found, channel, aside = np.empty((4, 2 * ROWS)), np.empty((3, channels)), np.empty(9)
+    dots, founds, channels_of, asides = learned
+    channels = channels_of.shape[2]
     for h in range(state.shape[0]):
-        row, first, pattern = pattern_of(state[h, PLACE], choice, h, sensor)
-        yaw = choice[h, YAW]
-        count = take_heights(memory, h, first, pattern, fresh[h], settings, found)
-        move_aside(memory, h, state[h, PLACE] - before[h], settings.fade, aside)
-        log_evidence(
-            memory, h, (yaw, row), pattern, found, count, aside, measured, temper, sensor, settings, channel
-        )  # fmt: skip
-        memory[h, LATERAL:LEVEL] = aside
+        row, first, _ = pattern_of(state[h, PLACE], choice, h, sensor)
+        yaw, own = choice[h, YAW], chosen[h]
+        count, found, channel = dots[own], founds[own], channels_of[own]
+        memory[h, LATERAL:LEVEL] = asides[own]
         for k in range(count):
             side, across = divmod(int(found[0, k]), ROWS)
             slot = ROWS * ((first + side) & (KEPT_HEIGHTS - 1)) + across
@@ -175,20 +173,23 @@ def remember(state, choice, memory, before, fresh, measured, temper, sensor, set
 
 
 @nb.njit(cache=True)
-def predicted_charges(state, choice, memory, sensor):  # type: ignore[no-untyped-def]
-    """Charges (n,) of the first hypothesis, without drift."""
+def predicted_charges(state, choice, memory, sensor, wider):  # type: ignore[no-untyped-def]
+    """Charges (3, n) of the first hypothesis without drift: of single dots, what these do to each other, and change of
+    the former with the width of the sensor.
+    """
     row, first, pattern = pattern_of(state[0, PLACE], choice, 0, sensor)
     yaw, (offset, share, _) = choice[0, YAW], table_offset(lateral_place(memory, 0))
-    charge = np.zeros(sensor.lone.shape[4])
+    charge = np.zeros((3, sensor.lone.shape[4]))
     count, mean = 0, 0.0
     for dot in range(2 * ROWS):
         if pattern >> dot & 1:
             side, across = divmod(dot, ROWS)
             height = memory[0, HEIGHT + ROWS * ((first + side) & (KEPT_HEIGHTS - 1)) + across]
-            low, high = sensor.lone[yaw, row, offset, dot], sensor.lone[yaw, row, offset + 1, dot]
-            charge += height * (low + share * (high - low))
+            for part, table in ((0, sensor.lone), (2, wider)):
+                low, high = table[yaw, row, offset, dot], table[yaw, row, offset + 1, dot]
+                charge[part] += height * (low + share * (high - low))
             count, mean = count + 1, mean + height
     if count:
         low, high = sensor.beside[row, offset, pattern], sensor.beside[row, offset + 1, pattern]
-        charge += mean / count * (low + share * (high - low))
-    return charge * memory[0, LEVEL + 2 * len(charge) : LEVEL + 3 * len(charge)]
+        charge[1] = mean / count * (low + share * (high - low))
+    return charge * memory[0, LEVEL + 2 * charge.shape[1] : LEVEL + 3 * charge.shape[1]]

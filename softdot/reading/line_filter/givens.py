@@ -9,7 +9,8 @@ class Sensor(NamedTuple):
     """What the charges are compared with: charges of single dots, what dots beside each other add, pitches, and floor
     of the variance and drift of each channel (n,).
 
-    drift_pC, bend_pC : standard deviations in a step of the walk of the drift, and of its way per step.
+    drift_pC, bend_pC : standard deviations in a step of the walk of the drift, and of its way per step. silent_mm :
+    distance of the array's middle from the middle row beyond which nothing tells whether the far row has dots.
     """
 
     lone: Floats
@@ -21,6 +22,7 @@ class Sensor(NamedTuple):
     floor_pC2: Floats
     drift_pC: Floats
     bend_pC: Floats
+    silent_mm: float
 
 
 class HandMotion(NamedTuple):
@@ -31,8 +33,8 @@ class HandMotion(NamedTuple):
     of one that passes without contact. height, height_spread : mean and variance of the height of dots, as shares of
     the nominal charge. rough : standard deviation of a charge over the charge; degrees : of Student's t. fade : what
     is left of a wander across the line. gain_spread, least_gain_spread, gain_walk : variance of a gain at
-    first, at least, and by which it may change. kept_log, most_kept : how far behind the best, and how many hypotheses
-    are kept.
+    first, at least, and by which it may change. kept_log : how far behind the best hypotheses are kept; most_weighed,
+    most_kept : how many of them the charges weigh, and how many are left then.
     """
 
     step_s: float
@@ -60,4 +62,5 @@ class HandMotion(NamedTuple):
     least_gain_spread: float
     gain_walk: float
     kept_log: float
+    most_weighed: int
     most_kept: int

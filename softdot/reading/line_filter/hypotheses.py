@@ -1,13 +1,13 @@
 """The hypotheses with which a line begins, or a lost track is looked for, and how a hand moves."""
 
 from dataclasses import dataclass
-from itertools import product
 from math import exp, log, sqrt
 from typing import Any
 
 import numpy as np
 
 from foundation.arrays import Floats, Ints
+from softdot.reading.cells import KINDS_OF_CELL
 from softdot.reading.line_filter.beam import RARE_STEPS
 from softdot.reading.line_filter.givens import HandMotion
 from softdot.reading.line_filter.hypothesis_arrays import (
@@ -35,6 +35,8 @@ TURNS_PER_S, LIFTS_PER_S, TOUCHES_PER_S = 0.2, 0.2, 6.0
 """How often a hand stops and goes on, goes back and forth, turns by a step, loses and finds contact: all of this is
 assumed.
 """
+UNSEEN_SHARE = 0.6
+"""Weight of a column that passes without contact, beside the patterns that it may have: assumed."""
 BLANK = 0.3
 """Share of blank columns where nothing is known."""
 BLANK_CELLS, BLANK_AGAIN, BLANK_FIRST, BLANK_SECOND = 0.18, 0.03, 0.05, 0.2
@@ -43,7 +45,7 @@ HEIGHT_MEAN, HEIGHT_SPREAD = 0.9, 0.25
 """Mean and standard deviation of what a dot gives over what a nominal one would, worn ones among them: assumed."""
 ROUGH_SHARE, DEGREES = 0.15, 4.0
 """Standard deviation of a charge over the charge, and degrees of freedom of Student's t."""
-KEPT_LOG, MOST_KEPT, EARLY_KEPT = 11.0, 1500, 12_000
+KEPT_LOG, MOST_WEIGHED, MOST_KEPT, EARLY_KEPT = 11.0, 6000, 1500, 12_000
 SPEED_FACTOR, SPEEDS = 2.2, 7
 """Factor about a rough speed within which speeds are tried, and their number."""
 FARTHEST_SHARE, NEAREST_MM, ENTRY_STEP_MM = 1.4, 0.4, 0.3
@@ -99,7 +101,7 @@ def settings(step_s: float, is_mirrored: bool) -> HandMotion:
         log_touch=often(TOUCHES_PER_S),
         log_blank=np.log(blank),
         log_dots=np.log((1.0 - blank) / 7.0),
-        log_unseen=log(BLANK),
+        log_unseen=log(UNSEEN_SHARE),
         height=HEIGHT_MEAN,
         height_spread=HEIGHT_SPREAD**2,
         rough=ROUGH_SHARE,
@@ -109,6 +111,7 @@ def settings(step_s: float, is_mirrored: bool) -> HandMotion:
         gain_walk=GAIN_WALK**2 * step_s,
         fade=exp(-step_s / WANDER_S),
         kept_log=KEPT_LOG,
+        most_weighed=MOST_WEIGHED,
         most_kept=MOST_KEPT,
     )
 
@@ -126,23 +129,28 @@ def _blank_columns(is_mirrored: bool) -> Floats:
 def early_settings(step_s: float, is_mirrored: bool) -> HandMotion:
     """The motion over the first column: what is rare is left out, and more hypotheses are kept."""
     rare: dict[str, Any] = dict.fromkeys(("log_jump", "log_stop", "log_back", "log_turn", "log_lift"), -1e9)
-    return settings(step_s, is_mirrored)._replace(most_kept=EARLY_KEPT, **rare)
+    return settings(step_s, is_mirrored)._replace(most_weighed=4 * EARLY_KEPT, most_kept=EARLY_KEPT, **rare)
 
 
 def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) -> Beam:
     """The array meets the first column of a line: of its cell the first or the second, any pattern but a blank."""
     entries = np.arange(NEAREST_MM, 0.5 * FARTHEST_SHARE * table.cell_pitch_mm, ENTRY_STEP_MM)
-    postures = list(product(_lateral_places(), range(2, len(YAWS_DEG) - 2, 2)))
-    rows, chosen, asides = [], [], []
-    for column, pattern in product((0, 1), range(1, 8)):
-        chance = log((FIRST_COLUMN if column == 0 else 1.0 - FIRST_COLUMN) / 7.0)
-        for entry, speed, ((aside, log_aside), yaw) in product(entries, _speeds(speed_mm_per_s), postures):
-            turned = -0.5 * (YAWS_DEG[yaw] / YAW_SPREAD_DEG) ** 2
-            rows.append((column_mm(table, column) - entry, speed, speed, chance + log_aside + turned))
-            chosen.append((FORTH, yaw, 1, column + 1, pattern))
-            asides.append(aside)
-    memory = _memory(np.array(asides), _channels(channels))
-    return Beam(np.array(rows), np.array(chosen, dtype=np.int64), memory)
+    speeds, asides = _speeds(speed_mm_per_s), _lateral_places()
+    yaws = np.arange(2, len(YAWS_DEG) - 2, 2)
+    column, pattern, entry, speed, aside, yaw = _every(2, 7, len(entries), len(speeds), len(asides), len(yaws))
+    first = np.log([FIRST_COLUMN / 7.0, (1.0 - FIRST_COLUMN) / 7.0])
+    turned = -0.5 * (YAWS_DEG[yaws] / YAW_SPREAD_DEG) ** 2
+    places = np.array([column_mm(table, number) for number in (0, 1)])
+    chance = first[column] + np.array([log_prior for _, log_prior in asides])[aside] + turned[yaw]
+    state = np.stack([places[column] - entries[entry], speeds[speed], speeds[speed], chance], axis=1)
+    ones = np.ones_like(column)
+    choice = np.stack([FORTH * ones, yaws[yaw], ones, column + 1, pattern + 1], axis=1)
+    return Beam(state, choice, _memory(np.array([own for own, _ in asides])[aside], _channels(channels)))
+
+
+def _every(*counts: int) -> Ints:
+    """All combinations (k, h) of numbers below k counts."""
+    return np.indices(counts).reshape(len(counts), -1)
 
 
 def _lateral_places() -> Asides:
@@ -206,21 +214,23 @@ def _anywhere(
     channels: Floats,
 ) -> Beam:
     """Hypotheses within half a cell of a place, with what a choice (5,) knows of the columns before, and its yaw."""
-    pitch = table.cell_pitch_mm
-    rows, chosen, own_asides = [], [], []
-    for place in middle_mm + np.arange(-0.5 * pitch, 0.5 * pitch, 0.15):
-        columns, seen = _with_unseen(known, _last_in_window(table, place))
-        for speed, (aside, log_aside), pattern in product(speeds, asides, range(64)):
-            rows.append((place, speed, speed, log_aside + _chance_of(pattern)))
-            own = columns & ~0xFF | pattern >> 3 | (pattern & 7) << 4
-            chosen.append((FORTH, known[YAW], 1, seen, own))
-            own_asides.append(aside)
-    memory = _memory(np.array(own_asides), channels)
-    return Beam(np.array(rows), np.array(chosen, dtype=np.int64), memory)
+    half = 0.5 * table.cell_pitch_mm
+    places = middle_mm + np.arange(-half, half, 0.15)
+    before = np.array([_with_unseen(known, _last_in_window(table, float(place))) for place in places], dtype=np.int64)
+    place, speed, aside, pattern = _every(len(places), len(speeds), len(asides), KINDS_OF_CELL)
+    chance = np.array([log_prior for _, log_prior in asides])[aside] + _log_chances()[pattern]
+    state = np.stack([places[place], speeds[speed], speeds[speed], chance], axis=1)
+    columns = before[place, 0] & ~0xFF | pattern >> 3 | (pattern & 7) << 4
+    ones = np.ones_like(place)
+    choice = np.stack([FORTH * ones, known[YAW] * ones, ones, before[place, 1], columns], axis=1)
+    return Beam(state, choice, _memory(np.array([own for own, _ in asides])[aside], channels))
 
 
-def _chance_of(pattern: int) -> float:
-    return sum(log(BLANK if column == 0 else (1.0 - BLANK) / 7.0) for column in (pattern & 7, pattern >> 3))
+def _log_chances() -> Floats:
+    """Log-probability (64,) of two columns where nothing is known."""
+    column = np.log([BLANK, *7 * [(1.0 - BLANK) / 7.0]])
+    pattern = np.arange(KINDS_OF_CELL)
+    return np.asarray(column[pattern & 7] + column[pattern >> 3])
 
 
 def _last_in_window(table: LineTable, place: float) -> int:

@@ -51,6 +51,10 @@ HEIGHTS_PRIOR, HEIGHTS_MEMORY, KNOWN_SPREAD, HEIGHT_SPREADS = 10.0, 60.0, 0.03, 
 """Of the heights of a line's dots: weight of what was assumed and memory, both in dots, largest variance of one that
 counts, and least and largest variance of all.
 """
+WIDTH_SPREAD, MOST_WIDER, WIDTH_MEMORY_MM, WIDTH_STEP = 0.05, 0.1, 100.0, 0.004
+"""By how much a sensor may be wider than its kernel: standard deviation, assumed, and most; the way over which this is
+remembered, and the change from which charges are made anew.
+"""
 NEAR_MM = 3.0
 """Way from the middle of a cell within which the fit counts for it."""
 
@@ -92,6 +96,9 @@ class LineFilter:
     _safe_log_speed: float = 0.0
     _fits: dict[int, float] = field(default_factory=dict)
     _asides: dict[int, float] = field(default_factory=dict)
+    _width: float = 0.0
+    _used_width: float = 0.0
+    _width_known: float = 1.0 / WIDTH_SPREAD**2
 
     def __post_init__(self) -> None:
         """Make room for children."""
@@ -138,6 +145,11 @@ class LineFilter:
         return float(memory[LATERAL + LINE_A] + memory[LATERAL + WANDER])
 
     @property
+    def width(self) -> float:
+        """Width of the sensor's response over that of the kernel, as this line tells it."""
+        return 1.0 + self._width
+
+    @property
     def yaw_deg(self) -> float:
         """Turn of the array against the line."""
         return float(YAWS_DEG[self.hypotheses.choice[self._best, YAW]])
@@ -164,7 +176,7 @@ class LineFilter:
         self._best = int(np.argmax(state[:, LOG_WEIGHT]))
         self.touching = bool(choice[self._best, TOUCH])
         self._learn_heights(seen)
-        self._learn(charge_pC)
+        self._learn(charge_pC, temper)
         self._note_time(time_s)
         self._look_for_the_track(charge_pC)
 
@@ -200,10 +212,11 @@ class LineFilter:
         spread = float(np.clip(second / count - (first / count) ** 2, *HEIGHT_SPREADS))
         self._settings = self._settings._replace(height=float(first / count), height_spread=spread)
 
-    def _learn(self, charge_pC: Floats) -> None:
+    def _learn(self, charge_pC: Floats, temper: float) -> None:
         """Follow the fit of the best hypothesis, and keep drift, gains and speed of where it is good."""
         known, alive = self.best, self.sensor.alive
-        predicted = predicted_charges(known.state, known.choice, known.memory, self.sensor)
+        parts = predicted_charges(known.state, known.choice, known.memory, self.sensor, self.table.wider)
+        predicted = parts[0] + parts[1]
         residual = charge_pC - self._level(known.memory[0]) - predicted
         variance = self.sensor.floor_pC2 + (self._settings.rough * predicted) ** 2
         share = min(self.step_s / FIT_S, 1.0)
@@ -212,6 +225,24 @@ class LineFilter:
         if self.fit < FOUND_FIT and self.speed_mm_per_s != 0.0 and self.touching:
             self._safe_channels = self._safe_channels + share * (known.memory[0, LEVEL:] - self._safe_channels)
             self._safe_log_speed += share * (float(known.state[0, LOG_SPEED]) - self._safe_log_speed)
+            self._learn_width(parts[2][alive], residual[alive], temper / variance[alive])
+
+    def _learn_width(self, change_pC: Floats, residual_pC: Floats, weight: Floats) -> None:
+        """Follow the width of the sensor by residuals (n,), of which it explains what is like its change (n,).
+
+        Least squares with a memory; the charges of single dots are made anew where the width has moved.
+        """
+        fade = min(self.step_s * abs(self.speed_mm_per_s) / WIDTH_MEMORY_MM, 1.0)
+        known = 1.0 / WIDTH_SPREAD**2
+        own = float(weight @ change_pC**2)
+        pull = fade * known * (0.0 - self._width)
+        self._width_known += own - fade * (self._width_known - known)
+        self._width += (float(weight @ (change_pC * residual_pC)) + pull) / self._width_known
+        self._width = float(np.clip(self._width, -MOST_WIDER, MOST_WIDER))
+        if abs(self._width - self._used_width) > WIDTH_STEP:
+            self._used_width = self._width
+            lone = self.table.lone + np.float32(self._width) * self.table.wider
+            self.sensor = self.sensor._replace(lone=lone)
 
     def _note_time(self, time_s: float) -> None:
         """Note the time at which the best hypothesis first passes a cell, and the fit around it."""

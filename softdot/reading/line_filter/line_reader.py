@@ -63,15 +63,16 @@ class LineReport:
     """What a reader knows of the line besides its cells; None before a line began.
 
     leftward : the array moves from right to left. hum_Hz : None without hum. gain (n,) : of each channel beside the
-    kernel's, with its polarity; dead : numbers of channels from 1. offset_mm, yaw_deg : of now. lost : how often the
-    track was lost. beside : number of cells at which the array was more than reach_mm beside the line, where no segment
-    feels one of its rows of dots.
+    kernel's, with its polarity; width : of the sensor's response over the kernel's. dead : numbers of channels from 1.
+    offset_mm, yaw_deg : of now. lost : how often the track was lost. beside : number of cells at which the array was
+    more than reach_mm beside the line, where no segment feels one of its rows of dots.
     """
 
     leftward: bool
     begin_s: float
     hum_Hz: float | None
     gain: Floats
+    width: float
     dead: tuple[int, ...]
     resting_V: Floats
     noise_V: Floats
@@ -136,7 +137,7 @@ class LineReader:
         hum = float(self._hum[0][FREQUENCY]) * self._rate / (2.0 * np.pi)
         dead = tuple(int(self._used[k]) + 1 for k in np.flatnonzero(~channels.alive))
         return LineReport(
-            best.table.is_mirrored, self._line_begin_s, hum or None, channels.gain * best.gain, dead,
+            best.table.is_mirrored, self._line_begin_s, hum or None, channels.gain * best.gain, best.width, dead,
             channels.resting_V, channels.noise_V, best.offset_mm, best.yaw_deg, best.losses,
             best.table.reach_mm, self._beside,
         )  # fmt: skip
@@ -214,7 +215,7 @@ class LineReader:
         floor = (FLOOR_SHARE * table.largest_pC) ** 2 + noise**2
         sensor = Sensor(
             table.lone, table.beside, table.within, table.dot_pitch_mm, table.cell_pitch_mm, channels.alive,
-            floor, drift, bend,
+            floor, drift, bend, table.felt_mm(FLOOR_SHARE),
         )  # fmt: skip
         begin = inside if channels.is_inside else at_the_first_column
         start = begin(table, channels.speed_mm_per_s, count)

@@ -18,13 +18,17 @@ from solve.compiled import piece
 
 PLACE_BIN_MM, SPEED_BIN, ASIDE_BIN_MM = 0.12, 0.18, 0.3
 """Within these, along the line, of the log-speed and across the line, two hypotheses are merged."""
+ROW_NEAR, ROW_FAR = 0x11, 0x44
+"""Bits of the first and of the last row of dots in the last two columns."""
 
 
 @nb.njit(cache=True)
-def merged(made, made_choice, memory, parent, count, top, open_bits):  # type: ignore[no-untyped-def]
+def merged(made, made_choice, memory, parent, count, top, open_bits, silent_mm):  # type: ignore[no-untyped-def]
     """Numbers of the children that stand for all that agree: the likeliest, with the weighed mean of the motions.
 
-    open_bits : mask of the columns in which they must agree, those that are not given out yet.
+    open_bits : mask of the columns in which they must agree, those that are not given out yet. silent_mm : distance
+    from the middle row beyond which dots of the far row in the last two columns are not told apart: two that differ in
+    nothing else are one, or each would be half as likely as a neighbouring place that has no such row.
     """
     size = 64
     while size < 2 * count:
@@ -34,7 +38,9 @@ def merged(made, made_choice, memory, parent, count, top, open_bits):  # type: i
     total, most = np.zeros((count, 4)), np.empty(count)
     number = 0
     for child in range(count):
-        key = _key(made[child], made_choice[child], lateral_place(memory, parent[child]), open_bits)
+        aside = lateral_place(memory, parent[child])
+        untold = ROW_NEAR if aside > silent_mm else ROW_FAR if aside < -silent_mm else 0
+        key = _key(made[child], made_choice[child], aside, open_bits & ~untold)
         slot = key & (size - 1)
         while slots[slot] >= 0 and keys[slots[slot]] != key:
             slot = (slot + 1) & (size - 1)

@@ -26,6 +26,8 @@ YAWS_DEG = np.arange(-20.0, 20.1, 5.0)
 ROWS = DOTS // 2
 FAINT_SHARE = 0.15
 """Of the largest charge of one dot, below which a dot is not told from what is not known of the sensor."""
+WIDER = 0.05
+"""Share by which the kernel is widened and narrowed to see what that changes."""
 HIGH = 0.98
 """Quantile of charges that stands for a large one."""
 
@@ -35,7 +37,8 @@ class LineTable:
     """Charges of two columns of dots under an array that moves towards rising place.
 
     lone (yaw, place, offset, 6, n) in pC : of single dots, on the channels in use, numbered by channels (n,). Dots 0
-    to 2 are the column behind, 3 to 5 the next one. beside (place, offset, 64, n) : what the dots of a pattern add to
+    to 2 are the column behind, 3 to 5 the next one. wider : by how much these change where the sensor is wider than its
+    kernel, over the share by which it is. beside (place, offset, 64, n) : what the dots of a pattern add to
     the sum of single ones; its bits are the dots. within (place,) : whether the column behind is the second one
     of its cell. is_mirrored : the array moves from right to left, and a cell's right column comes first. largest_pC :
     largest charge of a channel by one dot. high_pC (n,) : what one of fifty places and patterns exceeds.
@@ -43,6 +46,7 @@ class LineTable:
     """
 
     lone: Floats
+    wider: Floats
     beside: Floats
     channels: Ints
     within: Bools
@@ -57,9 +61,13 @@ class LineTable:
     @property
     def reach_mm(self) -> float:
         """Distance of the array's middle from the middle row up to which each row of dots is felt by some segment."""
+        return self.felt_mm(FAINT_SHARE)
+
+    def felt_mm(self, share: float) -> float:
+        """The same where a row is felt by a share of the largest charge of one dot."""
         middle = len(OFFSETS_MM) // 2
         largest = np.abs(self.lone[len(YAWS_DEG) // 2, :, :, :ROWS]).max(axis=(0, 3)).min(axis=1)
-        felt = largest >= FAINT_SHARE * self.largest_pC
+        felt = largest >= share * self.largest_pC
         right = int(np.argmin(np.append(felt[middle:], False)))
         left = int(np.argmin(np.append(felt[middle::-1], False)))
         return max(min(left, right) - 1, 0) * float(OFFSETS_MM[1] - OFFSETS_MM[0])
@@ -103,23 +111,26 @@ def _kept_table(key: _Key, is_mirrored: bool) -> LineTable:
     channels = _channels_in_use(kernel, spacing)
     sign = -1.0 if is_mirrored else 1.0
     lone = _lone_charges(kernel, sign * along, across, channels)
+    wide, narrow = (_lone_charges(kernel, sign * along, across, channels, 1.0 + way) for way in (WIDER, -WIDER))
     bits = ((np.arange(KINDS_OF_CELL)[:, None] >> np.arange(DOTS)) & 1).astype(np.float64)
     beside = _beside(kernel, sign * along, across, bits, channels, lone)
     middle = len(OFFSETS_MM) // 2
     charge = bits @ lone[len(YAWS_DEG) // 2, :, middle] + beside[:, middle]
-    return _with_sizes((lone, beside, charge), channels, within, spacing, pitch, is_mirrored)
+    return _with_sizes(
+        (lone, (wide - narrow) / (2.0 * WIDER), beside, charge), channels, within, spacing, pitch, is_mirrored
+    )
 
 
 def _with_sizes(
-    charges: tuple[Floats, Floats, Floats], channels: Ints, within: Bools, spacing: float, pitch: float,
+    charges: tuple[Floats, Floats, Floats, Floats], channels: Ints, within: Bools, spacing: float, pitch: float,
     is_mirrored: bool,
 ) -> LineTable:  # fmt: skip
     """The table with the sizes of its charges, in the middle of the line and not turned."""
-    lone, beside, middle = charges
+    lone, wider, beside, middle = charges
     change = np.diff(middle, axis=0)[within[1:] == within[:-1]] / (pitch / PLACES)
     single = middle[:, [1 << dot for dot in range(DOTS)]]
     return LineTable(
-        np.ascontiguousarray(lone, dtype=np.float32), np.ascontiguousarray(beside, dtype=np.float32), channels, within,
+        *(np.ascontiguousarray(table, dtype=np.float32) for table in (lone, wider, beside)), channels, within,
         spacing, pitch, is_mirrored, float(np.abs(single).max()),
         float(np.sqrt(np.mean(change**2))), float(np.sqrt(np.mean((middle - middle.mean(axis=(0, 1))) ** 2))),
         _high_charge(middle.reshape(-1, len(channels))),
@@ -144,12 +155,12 @@ def _places_in_array(along: Floats, across: Floats, yaw_deg: float) -> tuple[Flo
     return cos(angle) * far + sin(angle) * wide, cos(angle) * wide - sin(angle) * far
 
 
-def _lone_charges(kernel: ArrayKernel, along: Floats, across: Floats, channels: Ints) -> Floats:
-    """Charges (yaw, place, offset, 6, n) of single dots."""
+def _lone_charges(kernel: ArrayKernel, along: Floats, across: Floats, channels: Ints, width: float = 1.0) -> Floats:
+    """Charges (yaw, place, offset, 6, n) of single dots, of a sensor whose response is wider than its kernel's."""
     depth = DEFAULT_SHARE_OF_DEPTH * float(kernel.depth_mm[-1])
     found = []
     for yaw in YAWS_DEG:
-        x, y = _places_in_array(along, across, float(yaw))
+        x, y = (one / width for one in _places_in_array(along, across, float(yaw)))
         found.append(kernel.of_one(x, y, np.full(x.shape, depth))[0][..., channels])
     return np.stack(found)
 

@@ -7,10 +7,12 @@ import pytest
 from geometry.braille_standards import standard
 from softdot.reading.cells import cells_of
 from softdot.reading.decoders.hand import track_hand
-from softdot.reading.line_filter.hypothesis_arrays import LATERAL
+from softdot.reading.line_filter.hypothesis_arrays import LATERAL, LOG_WEIGHT
 from softdot.reading.line_filter.lateral import LINE_MM, SLOPE, WANDER_MM, move_aside, place_spread, see, seen_at
+from softdot.reading.line_filter.merging import merged
 from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, line_table
 from softdot.reading.told_line import track_warnings
+from tests.cases import for_each
 from tests.softdot.reading.lines import simulated
 
 OF_PLACE = np.array([1.0, 0.0, 1.0])
@@ -58,6 +60,19 @@ def test_it_moves_and_learns_by_the_equations_of_kalman():
     expected = mean + gain * (charge - row @ mean), spread - np.outer(gain, row @ spread)
     for known, one in zip(matrix(after), expected, strict=True):
         np.testing.assert_allclose(known, one, atol=1e-12)
+
+
+@pytest.mark.press
+@for_each(("aside", "kept"), [(1.7, 1), (-1.7, 2), (0.5, 2)])
+def test_dots_of_a_row_that_is_not_felt_are_not_told_apart(aside, kept):
+    """Two hypotheses that differ in a dot of the first row of the last column, which an array at 1.7 mm cannot feel."""
+    made, memory = np.zeros((2, 4)), np.zeros((1, LATERAL + 9 + 4))
+    made[:, LOG_WEIGHT] = np.log([0.75, 0.25])
+    memory[0, LATERAL] = aside
+    choice = np.array([[1, 4, 1, 2, 0b0011], [1, 4, 1, 2, 0b0010]])
+    numbers = merged(made, choice, memory, np.zeros(2, dtype=np.int64), 2, 0.0, (1 << 16) - 1, 1.6)
+    assert len(numbers) == kept
+    assert made[numbers[0], LOG_WEIGHT] == pytest.approx(0.0 if kept == 1 else np.log(0.75))
 
 
 def test_the_reach_is_where_a_row_is_not_felt_any_more(kernel):

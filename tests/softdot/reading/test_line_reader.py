@@ -213,6 +213,7 @@ def test_a_known_line_tells_leads_gains_and_width(tmp_path):
     kernel = shared_kernel()
     wide = widened(replace(kernel, charge_pC=0.8 * kernel.charge_pC), 1.05)
     _, heard = simulated(wide, cells_of(text), speed_cv=0.1, **FAST)
+    assert track_hand(Reader(kernel, MARBURG, READOUT), heard).report.width == pytest.approx(1.05, abs=0.03)
     mixed = np.empty_like(heard.voltage_V)
     mixed[:, np.array(order) - 1] = -heard.voltage_V
     found = calibrate(Reader(kernel, MARBURG, READOUT), Voltages(heard.time_s, mixed), cells_of(text))

@@ -59,6 +59,7 @@ def test_a_recording_is_read_as_the_simulation_was(written, kernel_folder, tmp_p
     assert told["text_read"] == TEXT
     assert told["text_true"] is None
     assert told["track"]["speed_mm_per_s"] == pytest.approx(30.0, rel=0.03)
+    assert "What the line says is not known." in (tmp_path / "out" / "report.html").read_text("utf-8")
 
 
 def refused(arguments, out, capfd):
