@@ -67,7 +67,11 @@ class FullLoad:
                 side.start(self._rest_state)
             update_pair(pair, self._linear, tangent, self._state, similar=number > 0)
             below, above = (_last_response(side.setup) for side in pair)
-            found[name] = FullResponse(*((high - low) / variation.span for low, high in zip(below, above, strict=True)))
+            found[name] = FullResponse(
+                (above.force - below.force) / variation.span,
+                (above.voltage - below.voltage) / variation.span,
+                (above.electrode_voltages - below.electrode_voltages) / variation.span,
+            )
         return found
 
     def similar_answer(self, model: Model) -> FullResponse:

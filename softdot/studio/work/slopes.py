@@ -13,6 +13,7 @@ from softdot.studio.estimate import WITHOUT_EFFECT, dotted
 from softdot.studio.work.design import case_of, pressed_part
 from softdot.tolerances.responses import MOST_LOAD_STEPS, path_matters, solved_mesh
 from solve.solution.full_load import FullLoad
+from solve.solution.linear import LinearSolveError
 
 UNLIKELY = ("density", "pyroelectric", "yield_stress", "load_steps", "confidence")
 """Parts of keys that change no quasi-static press below its yield stress."""
@@ -31,12 +32,12 @@ def exponents(text: str, wanted: Sequence[str], tell: Tell) -> dict[str, Any]:
     if path_matters(config) or config.array is not None:
         raise InputError("the answer of this press depends on its path and is not estimated")
     full = FullLoad(model_of(config), solved_mesh(config))
-    force, voltage = full.answer
+    force, voltage = full.answer.force, full.answer.voltage
     if force <= 0.0 or voltage == 0.0:
         raise InputError("this press gives no force or no voltage")
     found: dict[str, Any] = {}
     for key, value in _keys(config, wanted).items():
-        with suppress(InputError, ValueError):
+        with suppress(InputError, ValueError, LinearSolveError):
             by_key = full.derivatives(variations_of(config, [key]))[key]
             of_voltage = by_key.voltage * value / voltage
             of_charge = of_voltage + _of_capacitance(config, key)
