@@ -130,8 +130,9 @@ def _with_sizes(
     change = np.diff(middle, axis=0)[within[1:] == within[:-1]] / (pitch / PLACES)
     single = middle[:, [1 << dot for dot in range(DOTS)]]
     return LineTable(
-        *(np.ascontiguousarray(table, dtype=np.float32) for table in (lone, wider, beside)), channels, within,
-        spacing, pitch, is_mirrored, float(np.abs(single).max()),
+        np.ascontiguousarray(lone, dtype=np.float32), np.ascontiguousarray(wider, dtype=np.float32),
+        np.ascontiguousarray(beside, dtype=np.float32), channels, within, spacing, pitch, is_mirrored,
+        float(np.abs(single).max()),
         float(np.sqrt(np.mean(change**2))), float(np.sqrt(np.mean((middle - middle.mean(axis=(0, 1))) ** 2))),
         _high_charge(middle.reshape(-1, len(channels))),
     )  # fmt: skip
