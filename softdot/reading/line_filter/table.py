@@ -129,9 +129,10 @@ def _with_sizes(
     lone, wider, beside, middle = charges
     change = np.diff(middle, axis=0)[within[1:] == within[:-1]] / (pitch / PLACES)
     single = middle[:, [1 << dot for dot in range(DOTS)]]
-    kept = [np.ascontiguousarray(table, dtype=np.float32) for table in (lone, wider, beside)]
     return LineTable(
-        kept[0], kept[1], kept[2], channels, within, spacing, pitch, is_mirrored, float(np.abs(single).max()),
+        np.ascontiguousarray(lone, dtype=np.float32), np.ascontiguousarray(wider, dtype=np.float32),
+        np.ascontiguousarray(beside, dtype=np.float32), channels, within, spacing, pitch, is_mirrored,
+        float(np.abs(single).max()),
         float(np.sqrt(np.mean(change**2))), float(np.sqrt(np.mean((middle - middle.mean(axis=(0, 1))) ** 2))),
         _high_charge(middle.reshape(-1, len(channels))),
     )  # fmt: skip
