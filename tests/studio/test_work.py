@@ -42,6 +42,17 @@ def test_a_design_takes_the_material_that_it_includes(tmp_path, monkeypatch):
     assert design.config_of(text).layer_materials()["medium1"].youngs_modulus_MPa == 0.345
 
 
+def test_what_is_already_known_is_told_with_every_step_that_follows():
+    told = []
+    progress = press.TaskProgress(told.append)
+    progress.stage("compare")
+    progress.step(1, 3, "")
+    progress.note("First look: the voltage is too high.")
+    progress.step(2, 3, "")
+    assert "known" not in told[-2]["progress"]
+    assert told[-1]["progress"]["known"] == ["First look: the voltage is too high."]
+
+
 @pytest.mark.press
 @for_each("name", MECHANISMS)
 def test_every_mechanism_can_be_switched_on_with_its_example(name):

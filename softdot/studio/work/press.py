@@ -142,7 +142,7 @@ class TaskProgress:
 
     def __init__(self, tell: Tell) -> None:
         self._tell, self._name, self._start = tell, "", time.monotonic()
-        self._known = ""
+        self._known: list[str] = []
 
     def stage(self, name: str) -> None:
         """A stage begins."""
@@ -159,7 +159,7 @@ class TaskProgress:
 
     def note(self, text: str) -> None:
         """What is already known is told with every step that follows."""
-        self._known = f"{self._known} {text}".strip()
+        self._known = [*self._known, text]
 
     def on_step(self, step: Step, number: int, count: int) -> None:
         """A load step has converged."""

@@ -122,6 +122,7 @@ export class Tasks {
     const left = told.left_s && told.count ? `, ${duration(told.left_s)} left` : "";
     item.querySelector(".state").textContent =
       `${told.stage}${told.count ? ` ${told.done} of ${told.count}` : ""}${told.text ? `: ${told.text}` : ""}${left}`;
+    if (told.known) item.querySelector(".more").replaceChildren(...told.known.map((one) => element("p", {}, one)));
     item.querySelector("button").hidden = false;
     bar.hidden = false;
     if (told.count) bar.value = told.done / told.count;
