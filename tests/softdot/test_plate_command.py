@@ -166,8 +166,10 @@ def test_json_and_pictures_of_the_whole_command(tmp_path, capfd):
     assert json.loads(capfd.readouterr().out) == json.loads((tmp_path / "out/plate.json").read_text("utf-8"))
     for name in ("plate.png", "printability-fdm.png", "printability-sla.png"):
         pixels = imread(tmp_path / "out" / name)
-        assert pixels.shape[:2] == (1200, 1600)
-        assert pixels[300:900, 200:1100, :3].std() > 0.02  # something is drawn
+        height, width = pixels.shape[:2]
+        assert width == 1600
+        assert height <= 1200
+        assert pixels[height // 4 : 3 * height // 4, 200:1100, :3].std() > 0.02  # something is drawn
 
 
 REFUSED = {

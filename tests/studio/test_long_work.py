@@ -33,9 +33,15 @@ def children(number: int) -> list[int]:
 
 
 def workers(number: int) -> list[int]:
-    return [
-        one for one in children(number) if b"foundation.worker_process" in Path(f"/proc/{one}/cmdline").read_bytes()
-    ]
+    return [one for one in children(number) if b"foundation.worker_process" in command_of(one)]
+
+
+def command_of(number: int) -> bytes:
+    """The command line of a process; empty where it has ended meanwhile."""
+    try:
+        return Path(f"/proc/{number}/cmdline").read_bytes()
+    except OSError:
+        return b""
 
 
 def runs(number: int) -> bool:

@@ -112,7 +112,7 @@ def test_curves_are_heard_read_and_taken_away(studio, open_tab, tmp_path):
     assert set(cells) <= set("⣀⠤⠒⠉")
     assert cells[0] == "⣀"
     page.locator("#curves summary").nth(2).click()
-    assert page.locator("#curves .plot").nth(2).locator("tbody tr").count() == len(cells)
+    until(lambda: page.locator("#curves .plot").nth(2).locator("tbody tr").count() == len(cells))
     with page.expect_download() as taken:
         page.locator("#csv").click()
     taken.value.save_as(tmp_path / "curves.csv")
