@@ -69,7 +69,8 @@ def run_array(
 def _summary(config: Config, found: ArrayStudy, warnings: list[str]) -> dict[str, Any]:
     """The content of array.json but for its times."""
     from softdot.arrays.kernel_errors import worst
-    from softdot.arrays.side_stiffness import ROLES, as_dict
+    from softdot.arrays.roles import ROLES
+    from softdot.arrays.side_stiffness import as_dict
     from softdot.config.hashes import config_hash
 
     matrix, layout = found.matrix, found.matrix.layout

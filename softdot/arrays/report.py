@@ -66,7 +66,7 @@ def _draw(found: ArrayStudy, folder: Path) -> list[tuple[str, str, str]]:
     from export.film_maps import film_figure
     from export.pictures import deepest
     from export.view import save_png
-    from softdot.arrays.side_stiffness import representatives
+    from softdot.arrays.roles import representatives
 
     folder.mkdir()
     matrix, last = found.matrix, deepest(found.result)
@@ -98,7 +98,7 @@ def _draw(found: ArrayStudy, folder: Path) -> list[tuple[str, str, str]]:
 
 def _draw_kernel(found: ArrayStudy, kernel: ArrayKernel, folder: Path) -> tuple[str, str, str]:
     from export.array.maps import draw_kernel
-    from softdot.arrays.side_stiffness import representatives
+    from softdot.arrays.roles import representatives
 
     layout = found.matrix.layout
     number = next(iter(representatives(layout).values()))

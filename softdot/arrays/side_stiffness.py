@@ -14,16 +14,15 @@ from scipy.interpolate import PchipInterpolator
 from scipy.optimize import minimize_scalar
 
 from foundation.arrays import Floats
-from geometry.array.layout import ArrayLayout, SegmentPlace
+from geometry.array.layout import ArrayLayout
 from geometry.parameters import LayerName
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.matrix import CrosstalkMatrix
 from softdot.arrays.presses import ArrayPresses, Signals
+from softdot.arrays.roles import representatives
 from softdot.prepared_press import PreparedPress
 
 STIFFNESSES_N_PER_MM3 = (0.01, 0.1, 0.5, 2.0, 10.0, 50.0, 300.0, 3000.0)
-ROLES = ("inner", "edge", "corner")
-"""By the number of directions in which a segment is the last of its row or column."""
 
 
 @dataclass(frozen=True)
@@ -54,25 +53,6 @@ class EffectiveSides:
     best: Likeness
     free: Likeness
     clamped: Likeness
-
-
-def role(layout: ArrayLayout, place: SegmentPlace) -> str:
-    """Which of ROLES a segment has. In a single row or column the last segments are edges."""
-    position = ((place.column, len(layout.centres(0))), (place.row, len(layout.centres(1))))
-    return ROLES[sum(count > 1 and at in (1, count) for at, count in position)]
-
-
-def representatives(layout: ArrayLayout) -> dict[str, int]:
-    """Number of the segment nearest to the middle for each role that the array has."""
-    found: dict[str, int] = {}
-    for number in np.argsort([np.hypot(place.x_mm, place.y_mm) for place in layout.places], kind="stable"):
-        found.setdefault(role(layout, layout.places[number]), int(number))
-    return {name: found[name] for name in ROLES if name in found}
-
-
-def middle(layout: ArrayLayout) -> SegmentPlace:
-    """The segment nearest to the middle: an inner one where there is one."""
-    return layout.places[next(iter(representatives(layout).values()))]
 
 
 def held_candidates(layout: ArrayLayout) -> list[tuple[LayerName, ...]]:

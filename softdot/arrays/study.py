@@ -13,7 +13,8 @@ from softdot.arrays.kernel import ArrayKernel
 from softdot.arrays.kernel_errors import KernelCheck, kernel_of
 from softdot.arrays.matrix import CrosstalkMatrix, crosstalk, matrix_presses
 from softdot.arrays.presses import ArrayPresses, Signals
-from softdot.arrays.side_stiffness import EffectiveSides, effective_sides, lone_presses, lone_sides, representatives
+from softdot.arrays.roles import representatives
+from softdot.arrays.side_stiffness import EffectiveSides, effective_sides, lone_presses, lone_sides
 from softdot.arrays.variants import Worth, variant_presses, worth
 from softdot.prepared_press import PreparedPress
 from softdot.progress import Progress

@@ -11,7 +11,7 @@ from geometry.array.parameters import Array, Groove
 from geometry.parameters import LayerName
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.presses import ArrayPresses
-from softdot.arrays.side_stiffness import middle
+from softdot.arrays.roles import middle
 from softdot.prepared_press import PreparedPress
 
 GROOVE_WIDTH, GROOVE_DEPTH = 0.1, 0.75

@@ -12,7 +12,7 @@ from foundation.errors import InputError
 from foundation.executor import HERE, Executor
 from foundation.source_hash import source_hash
 from softdot.arrays.case import ArrayCase
-from softdot.arrays.side_stiffness import middle
+from softdot.arrays.roles import middle
 from softdot.config.hashes import input_hash
 from softdot.config.model import as_segment, model_of
 from softdot.config.schema import Config

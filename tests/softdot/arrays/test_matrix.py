@@ -8,7 +8,7 @@ from softdot.arrays import presses as presses_module
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.matrix import CrosstalkMatrix, crosstalk
 from softdot.arrays.presses import ArrayPresses, Signals, StoppedPressError
-from softdot.arrays.side_stiffness import representatives, role
+from softdot.arrays.roles import representatives, role
 from softdot.case import Case
 from softdot.config.model import model_of
 from softdot.prepared_press import PreparedPress
