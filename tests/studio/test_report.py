@@ -33,9 +33,9 @@ const tries = [
   () => { top.location = `${far}top?${told}`; },
   () => { location = `${far}frame?${told}`; },
 ];
-tries.forEach((one, i) => setTimeout(() => { try { one(); } catch { /* refused */ } }, 60 * i));
+tries.forEach((one, i) => setTimeout(() => { try { one(); } catch { /* refused */ } }, 200 * i));
 </script></html>"""
-TRIES_S = 3.0
+TRIES_S = 3.0  # the tries begin 0.2 s apart, so that no navigation overtakes another
 
 
 @contextmanager
@@ -113,6 +113,4 @@ def test_a_script_in_a_report_leads_nowhere_and_sees_no_key(browser, tmp_path):
         page.goto(report.as_uri())  # the same script, where nothing holds it
         page.wait_for_timeout(1e3 * TRIES_S)
         context.close()
-    arrived = {one.split("?")[0] for one in heard}
-    assert arrived >= {"/fetch", "/image"}
-    assert arrived & {"/top", "/frame"}  # the second way out may overtake the first
+    assert {one.split("?")[0] for one in heard} >= {"/fetch", "/image", "/top"}
