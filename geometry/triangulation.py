@@ -33,8 +33,10 @@ def _of_face(face: Any) -> tuple[Floats, Ints]:
     place = TopLoc_Location()
     found = BRep_Tool.Triangulation_s(face, place)
     move = place.Transformation()
-    nodes = [found.Node(number).Transformed(move) for number in range(1, found.NbNodes() + 1)]
-    corners = np.array([[each.Value(n) - 1 for n in (1, 2, 3)] for each in found.Triangles()], dtype=np.int64)
+    nodes = (found.Node(number) for number in range(1, found.NbNodes() + 1))
+    moved = nodes if place.IsIdentity() else (node.Transformed(move) for node in nodes)
+    points = np.array([node.Coord() for node in moved]).reshape(-1, 3)
+    corners = np.array([each.Get() for each in found.Triangles()], dtype=np.int64) - 1
     if face.Orientation() == TopAbs_Orientation.TopAbs_REVERSED:
         corners = corners[:, [0, 2, 1]]
-    return np.array([(node.X(), node.Y(), node.Z()) for node in nodes]).reshape(-1, 3), corners
+    return points, corners

@@ -10,7 +10,6 @@ import asyncio
 import logging
 import signal
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import Future
 from contextlib import suppress
 from functools import partial
 from importlib import import_module
@@ -49,7 +48,7 @@ class Worker(WorkerProcess):
         """warm_up : done before the first task, so that that is quick."""
         super().__init__()
         self._loaded = self.begin(load, warm_up)
-        self._task: Future[Any] | None = None
+        self._task: asyncio.Future[Any] | None = None
 
     @property
     def is_warm(self) -> bool:
@@ -69,10 +68,9 @@ class Worker(WorkerProcess):
         def told(value: Any) -> None:
             loop.call_soon_threadsafe(tell, value)
 
-        self._task = self.begin(do_task, task, arguments, tell=told)
-        waiting = asyncio.wrap_future(self._task)
-        waiting.add_done_callback(lambda done: done.cancelled() or done.exception())  # nobody may wait any more
-        return await asyncio.shield(waiting)
+        self._task = asyncio.wrap_future(self.begin(do_task, task, arguments, tell=told))
+        self._task.add_done_callback(lambda done: done.cancelled() or done.exception())  # nobody may wait any more
+        return await asyncio.shield(self._task)
 
     async def stops(self) -> bool:
         """Whether the task stops soon when it is asked to, so that the process can be used again."""
@@ -80,8 +78,7 @@ class Worker(WorkerProcess):
             return self.is_alive
         if not self.interrupt():
             return False
-        with suppress(Exception):
-            await asyncio.wait_for(asyncio.shield(asyncio.wrap_future(self._task)), LONGEST_STOP_S)
+        await asyncio.wait([self._task], timeout=LONGEST_STOP_S)
         return self._task.done() and self.is_alive
 
 

@@ -11,8 +11,8 @@ from softdot.studio.guard import Guard
 from softdot.studio.session import Session
 
 MOST_TABS = 12
-FIRST_PARTS_S = 1.0
-"""The tab that waits has its form before another process loads the solver."""
+FIRST_FORM_S, FIRST_PARTS_S = 0.3, 1.3
+"""After which the tab that waits has its form, and its parts can be drawn."""
 GRACE_S = 20.0
 """A tab that is loaded again is back within that time, on a busy machine too; after it its processes end."""
 
@@ -27,17 +27,19 @@ class Tabs:
         self._form = asyncio.ensure_future(self._load())
 
     async def form(self) -> Any:
-        """What the form is made of; asked for again where its process was lost."""
+        """What the form is made of; asked for again where its process was lost. Then processes load that draw and press,
+        so that the browser has the cores until it shows the form.
+        """
         if self._form.done() and self._form.exception() is not None:
             self._form = asyncio.ensure_future(self._load())
-        return await asyncio.shield(self._form)
+        found = await asyncio.shield(self._form)
+        for wait_s, processes in ((FIRST_FORM_S, self.studio.draw), (FIRST_PARTS_S, self.studio.solve)):
+            asyncio.get_running_loop().call_later(wait_s, processes.prepare)
+        return found
 
     async def _load(self) -> Any:
-        """What the form is made of; then a process that draws and one that presses."""
-        found = await self.studio.check.run("form:form")
-        self.studio.draw.prepare()
-        asyncio.get_running_loop().call_later(FIRST_PARTS_S, self.studio.solve.prepare)
-        return found
+        """What the form is made of."""
+        return await self.studio.check.run("form:form")
 
     def session(self, name: str | None, is_copy: bool) -> Session:
         """The design of a tab that comes back, also after a crash; else a new one. InputError for too many.

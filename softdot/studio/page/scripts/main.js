@@ -16,7 +16,6 @@ import * as result from "./result.js";
 import { StartPage } from "./start.js";
 import { Store } from "./store.js";
 import { Editor, prepareTabs } from "./toml.js";
-import { View } from "./view.js";
 
 const key = new URLSearchParams(location.search).get("key") || "";
 const isCopy = sessionStorage.getItem("open") === "yes"; // a copy of a tab has its storage too
@@ -28,9 +27,9 @@ const tab = {
   shown: null,
   painted: {},
   tries: 0,
+  viewer: null,
 };
 const store = new Store(sessionStorage);
-const viewer = new View(find("#view3d"));
 const aloud = (text) => {
   find("#heard").textContent = text;
 };
@@ -44,6 +43,7 @@ const goal = new GoalPanel(find("#goal"), find("#goal-found"), ask);
 const RESULTS = { influences: "Each number 10 % larger", tolerances: "Each number at the end of its tolerance" };
 // Panels with a mark of their own where they are of a design before.
 const PANELS = ["response", "goal"];
+const START_MS = 1000;
 const MARKED = { numbers: "#numbers", curves: "#curves", circuit: "#circuit .answer", array: "#array figure" };
 
 // Files have addresses of their own, which hold no key; a report is shown in a frame that leads nowhere else.
@@ -76,10 +76,8 @@ function isNew(name, now) {
 function paintBody() {
   const { state } = store,
     body = store.bodyToShow(tab.shown);
-  if (!body || !body.view) return;
-  if (isNew("body", body)) {
-    viewer.show(body.view);
-  }
+  if (!body || !body.view || !tab.viewer) return;
+  if (isNew("body", body)) tab.viewer.show(body.view);
   tab.shown = body;
   const isPress = body.tell === "view",
     current = store.isCurrent(body.tell);
@@ -112,6 +110,13 @@ function paintForm({ design }) {
   else tidy(find("#form"));
 }
 
+// After the form, and where nobody leaves the start page at once: a driver may take a second to begin.
+async function beginView() {
+  const { View } = await import("./view.js");
+  tab.viewer = new View(find("#view3d"));
+  paint();
+}
+
 function buildForm() {
   tab.isBuilt = true;
   find("#form").replaceChildren(...tab.form.whole());
@@ -119,6 +124,7 @@ function buildForm() {
   find("#circuit .fields").replaceChildren(tab.circuit.table(store.form.schema.properties.readout, ["readout"]));
   find("#circuit .fields details").open = true;
   hints(find("#form"), find("#hint"));
+  setTimeout(beginView, find("#start").hidden ? 0 : START_MS);
 }
 
 function paintDesign({ design }) {

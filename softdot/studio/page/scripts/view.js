@@ -145,8 +145,12 @@ export class View {
       width = canvas.clientWidth,
       height = canvas.clientHeight;
     if (!width || !height || !camera.half) return;
-    renderer.setPixelRatio(finer * (window.devicePixelRatio || 1));
-    renderer.setSize(width, height, false);
+    const size = [width, height, finer * (window.devicePixelRatio || 1)];
+    if (String(size) !== String(this.size)) {
+      renderer.setPixelRatio(size[2]);
+      renderer.setSize(width, height, false); // makes new buffers, also where the size is the same
+      this.size = size;
+    }
     camera.frame(width, height);
     renderer.render(this.bodies.scene, camera.lens);
     this.project = camera.projection(width, height);
