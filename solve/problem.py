@@ -61,19 +61,21 @@ def build_system(
     physics: Physics | None = None,
     readout: Readout | None = None,
     opened: tuple[OpenInterface, ...] = (),
-    units: Units | None = None,
+    like: System | None = None,
     separate_channels: bool = False,
 ) -> System:
     """Discretise a press. materials : region name -> material, one for each region of the mesh.
 
-    tet_mesh and opened as solve.open_interfaces.open_interfaces gives them; units : to share them with another system;
-    separate_channels : as of a Model.
+    tet_mesh and opened as solve.open_interfaces.open_interfaces gives them; like : a system on the same mesh before it
+    was moved, whose units and numbers are shared; separate_channels : as of a Model.
     """
     physics = physics or Physics()
     laws = {name: materials[name].law.scale_moduli(1e6) for name in tet_mesh.region_names if name != "film"}
     numbers, parallel = Numbers(), readout is not None and not separate_channels
-    unknowns = _number_unknowns(segment, materials, laws, tet_mesh, physics, readout, parallel, force_driven, numbers)
-    units = units or solver_units(segment, laws, materials)
+    unknowns = _number_unknowns(
+        segment, materials, laws, tet_mesh, physics, readout, parallel, force_driven, numbers, like
+    )
+    units = solver_units(segment, laws, materials) if like is None else like.units
     points = tet_mesh.points_mm * (1e-3 / units.length)
     contact = contact_facets(points, tet_mesh.facets["contact"], unknowns, RigidDot(dot, 1e3 * units.length))
     share = meshed_share(segment, tet_mesh)
@@ -97,8 +99,11 @@ def _number_unknowns(
     parallel: bool,
     force_driven: bool,
     numbers: Numbers,
+    like: System | None,
 ) -> Unknowns:
-    """Number the unknowns of a press. parallel : one amplifier has all electrodes; numbers : hands the numbers out."""
+    """Number the unknowns of a press. parallel : one amplifier has all electrodes; numbers : hands the numbers out;
+    like : as of build_system.
+    """
     film = materials["film"]
     two_way = isinstance(film, PiezoelectricFilm) and film.coupling == "two-way"
     virtual_ground = readout is not None and readout.mode == "charge"
@@ -113,6 +118,7 @@ def _number_unknowns(
         parallel=parallel,
         approach=force_driven or any(one.frees_dot for one in physics.terms),
         freed=tuple(name for one in physics.terms for name in one.frees),
+        places=None if like is None else like.points,
     )
 
 

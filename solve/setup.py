@@ -15,7 +15,6 @@ from solve.recorder import Recorder
 from solve.solution.schedule import Target, schedule
 from solve.symmetry import planes_of
 from solve.system import System
-from solve.units import Units
 from solve.whole_segment import meshed_share
 
 
@@ -65,9 +64,9 @@ def set_up(
     dot: DotShape,
     tet_mesh: TetMesh,
     opened: tuple[OpenInterface, ...],
-    units: Units | None = None,
+    like: System | None = None,
 ) -> Setup:
-    """Discretise a press on a mesh whose interfaces are open already; units : of another system, to share them.
+    """Discretise a press on a mesh whose interfaces are open already; like : as of solve.problem.build_system.
 
     ValueError for a mesh that ends at a plane which the press does not have.
     """
@@ -75,7 +74,7 @@ def set_up(
         raise ValueError("the press is not symmetric about a plane at which its mesh ends")
     driven = model.press.force_N is not None
     system = build_system(
-        model.segment, model.materials, dot, tet_mesh, driven, model.physics, model.amplifier, opened, units,
+        model.segment, model.materials, dot, tet_mesh, driven, model.physics, model.amplifier, opened, like,
         model.separate_channels,
     )  # fmt: skip
     refuse_unresolved_electrodes(model.segment, tet_mesh, system.film)

@@ -84,7 +84,7 @@ class FullLoad:
         dot, base = resolve_dot(model.dot, model.segment), self._base
         if set(base.tet_mesh.planes) <= set(planes_of(model, dot)):
             moved = morphed_mesh(base.tet_mesh, base.model.segment, model.segment)
-            setup = set_up(model, dot, moved, base.opened, base.system.units)
+            setup = set_up(model, dot, moved, base.opened, base.system)
             guess = self._state.x if setup.system.count == base.system.count else None
         else:
             setup = discretise(model, morphed_mesh(self._tet_mesh, base.model.segment, model.segment), dot)

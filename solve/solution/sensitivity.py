@@ -139,7 +139,7 @@ def varied_systems(name: str, variation: Variation, base: Setup) -> tuple[Varied
     pair = []
     for changed in (variation.below, variation.above):
         moved = morphed_mesh(base.tet_mesh, base.model.segment, changed.segment)
-        setup = set_up(changed, resolve_dot(changed.dot, changed.segment), moved, base.opened, base.system.units)
+        setup = set_up(changed, resolve_dot(changed.dot, changed.segment), moved, base.opened, base.system)
         if setup.system.count != base.system.count:
             raise ValueError(f"{name}: this parameter switches something on or off at its present value")
         pair.append(VariedSystem(setup, setup.full_drive / base.full_drive))

@@ -101,11 +101,11 @@ def test_electrodes_share_the_charge_of_the_film():
 @pytest.mark.press
 @for_each("shape", ["dome", "cylinder"])
 def test_round_effectors_are_those_of_one_segment(shape):
-    """Extruded here, meshed by pytetwild there; the other effector is not touched."""
+    """Extruded here, meshed by pytetwild there."""
     effector = {"shape": shape, "diameter_mm": 1.6, "height_mm": 0.5, "material": "rubber"}
     sizes = {"element_size_mm": 0.45, "contact_element_size_mm": 0.15}
-    pair = array(segment={"effector": effector}, mesh=sizes, shared=[])
-    press = solved(pair.press_over(pair.layout.places[0])).steps[-1]
+    alone = array(columns=1, segment={"effector": effector}, mesh=sizes, shared=[])
+    press = solved(alone.press_over(alone.layout.places[0])).steps[-1]
     force_N, charge_pC = lone("free", mesh={**sizes, "mesher": "pytetwild"}, effector=effector)
     agrees(f"{shape}, force (N)", press.reaction_force_N, force_N, 0.01)
     agrees(f"{shape}, charge (pC)", 1e12 * press.film_charge_C[0], charge_pC, 0.015)
