@@ -34,7 +34,7 @@ from solve.terms.rig import RigTerm
 from solve.terms.rigid_dot import RigidDot
 from solve.terms.solid import SolidRegion, solid_region
 from solve.terms.unilateral_interface import opening_nodes, unilateral_interface
-from solve.units import Units, solver_units
+from solve.units import solver_units
 from solve.whole_segment import meshed_share, whole_charge
 
 

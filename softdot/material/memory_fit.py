@@ -171,13 +171,10 @@ def _relaxation_times(courses: Sequence[SpecimenCourse], strain_range: float) ->
     held = [course for course in courses if course.holds_in(strain_range)]
     if not held:
         return ()
-    loadings, steps = [], []
-    for course in held:
-        first = course.time_s[(course.phase == LOADING) & (course.cycle == 0)]
-        loadings.append(float(np.ptp(first)) / (1 + len(course.holds_s)))
-        steps.append(float(np.median(np.diff(first))))
+    steps = [np.diff(course.time_s[(course.phase == LOADING) & (course.cycle == 0)]) for course in held]
+    step = min(float(np.median(one)) for one in steps)
     longest = max(float(course.time_s[-1]) for course in held)
-    return relaxation_times(TimeScales(max(min(loadings), min(steps)), min(steps), longest))
+    return relaxation_times(TimeScales(step, step, longest))
 
 
 def _without_nothing(material: FittedMaterial) -> FittedMaterial:

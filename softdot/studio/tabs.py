@@ -27,8 +27,8 @@ class Tabs:
         self._form = asyncio.ensure_future(self._load())
 
     async def form(self) -> Any:
-        """What the form is made of; asked for again where its process was lost. Then processes load that draw and press,
-        so that the browser has the cores until it shows the form.
+        """What the form is made of; asked for again where its process was lost. Processes that draw and press load
+        after it, so that the browser has the cores until it shows the form.
         """
         if self._form.done() and self._form.exception() is not None:
             self._form = asyncio.ensure_future(self._load())

@@ -195,6 +195,7 @@ def test_a_dome_too_low_for_a_mould_is_not_sent_to_a_sheet():
         contents_for((low, {}, {}))
 
 
+@pytest.mark.evidence
 @for_each("name", MORE)
 def test_other_sizes_and_other_frames(name):
     found = contents_for(MORE[name])

@@ -81,9 +81,13 @@ def start_studio(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[
             one.end()
 
 
-@pytest.fixture(scope="module")
-def studio(start_studio: Callable[..., Running]) -> Running:
-    return start_studio()
+@pytest.fixture(scope="session")
+def studio(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
+    """One for all tests that neither end it nor need another design."""
+    found = Running(tmp_path_factory.mktemp("studio"), QUICK)
+    yield found
+    if found.process.poll() is None:
+        found.end()
 
 
 class Tab:

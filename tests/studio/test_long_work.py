@@ -123,6 +123,7 @@ def test_a_closed_tab_ends_its_work_and_its_design_is_found_by_the_next_start(st
     assert running.end() == 0
 
 
+@pytest.mark.evidence
 def test_the_default_design_gives_the_numbers_of_softdot_run(start_studio, open_tab, tmp_path):
     """By the command line, after three sliders."""
     running = start_studio(start_text(None))

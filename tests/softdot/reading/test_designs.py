@@ -329,7 +329,7 @@ contact_element_size_mm = 0.3
 """
 
 
-@pytest.mark.press
+@pytest.mark.evidence
 def test_designs_are_pressed_read_and_kept(tmp_path):
     """From the command line, by a real cluster: two designs on the coarsest mesh, and nothing is pressed twice."""
     text = FILE.read_text("utf-8")
