@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from foundation.arrays import Floats
 from foundation.errors import InputError
 from geometry.dot import DotShape
 from geometry.electrode_outlines import electrode_outlines
@@ -72,11 +73,12 @@ def build_system(
     physics = physics or Physics()
     laws = {name: materials[name].law.scale_moduli(1e6) for name in tet_mesh.region_names if name != "film"}
     numbers, parallel = Numbers(), readout is not None and not separate_channels
-    unknowns = _number_unknowns(
-        segment, materials, laws, tet_mesh, physics, readout, parallel, force_driven, numbers, like
-    )
     units = solver_units(segment, laws, materials) if like is None else like.units
     points = tet_mesh.points_mm * (1e-3 / units.length)
+    places = points if like is None else like.points
+    unknowns = _number_unknowns(
+        segment, materials, laws, tet_mesh, places, physics, readout, parallel, force_driven, numbers
+    )
     contact = contact_facets(points, tet_mesh.facets["contact"], unknowns, RigidDot(dot, 1e3 * units.length))
     share = meshed_share(segment, tet_mesh)
     make = Builder(segment, materials, tet_mesh, points, unknowns, numbers, units, contact, share, force_driven)
@@ -94,21 +96,22 @@ def _number_unknowns(
     materials: Mapping[str, Material],
     laws: Mapping[str, MediumLaw],
     tet_mesh: TetMesh,
+    places: Floats,
     physics: Physics,
     readout: Readout | None,
     parallel: bool,
     force_driven: bool,
     numbers: Numbers,
-    like: System | None,
 ) -> Unknowns:
-    """Number the unknowns of a press. parallel : one amplifier has all electrodes; numbers : hands the numbers out;
-    like : as of build_system.
+    """Number the unknowns of a press. places : nodes (n, 3) by whose order unknowns are numbered; parallel : one
+    amplifier has all electrodes; numbers : hands the numbers out.
     """
     film = materials["film"]
     two_way = isinstance(film, PiezoelectricFilm) and film.coupling == "two-way"
     virtual_ground = readout is not None and readout.mode == "charge"
     return number(
         tet_mesh,
+        places,
         numbers,
         held_regions=segment.held_layers if segment.boundary == "clamped" else (),
         plane_strain=segment.section == "plane-strain",
@@ -118,7 +121,6 @@ def _number_unknowns(
         parallel=parallel,
         approach=force_driven or any(one.frees_dot for one in physics.terms),
         freed=tuple(name for one in physics.terms for name in one.frees),
-        places=None if like is None else like.points,
     )
 
 

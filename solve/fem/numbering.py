@@ -51,6 +51,7 @@ def fixed_nodes(tet_mesh: TetMesh, held_regions: tuple[str, ...], freed: tuple[s
 
 def number(
     tet_mesh: TetMesh,
+    places: Floats,
     numbers: Numbers,
     held_regions: tuple[str, ...],
     plane_strain: bool,
@@ -60,13 +61,13 @@ def number(
     parallel: bool,
     approach: bool,
     freed: tuple[str, ...] = (),
-    places: Floats | None = None,
 ) -> Unknowns:
     """Number the unknowns of a problem.
 
-    electrodes : (e,) numbers from 0, equal for electrodes of equal voltage; two_way : voltages act back, of electrodes
-    in parallel or each alone. freed : surfaces that are not held still. places : nodes (n, 3) by whose order unknowns
-    are numbered, those of the mesh if not given; a mesh that is moved a little would else exchange some numbers.
+    places : nodes (n, 3) by whose order unknowns are numbered; of a mesh that was moved those before, as nodes that
+    pass each other would exchange their numbers. electrodes : (e,) numbers from 0, equal for electrodes of equal
+    voltage; two_way : voltages act back, of electrodes in parallel or each alone. freed : surfaces that are not held
+    still.
     """
     twin = tet_mesh.twin
     free = _free_displacements(tet_mesh, fixed_nodes(tet_mesh, held_regions, freed), plane_strain)
@@ -78,7 +79,7 @@ def number(
     contact[touching] = numbers.take(len(touching))
 
     nodes = np.concatenate([np.nonzero(free)[0], corners, touching])
-    new = np.append(along_x((tet_mesh.points_mm if places is None else places)[nodes]), -1)  # -1 stays -1
+    new = np.append(along_x(places[nodes]), -1)  # -1 stays -1
     voltage = np.full(len(electrodes), -1)
     if two_way:
         voltage[:] = numbers.take(1) if parallel else numbers.take(int(electrodes.max()) + 1)[electrodes]

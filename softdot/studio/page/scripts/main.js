@@ -76,8 +76,8 @@ function isNew(name, now) {
 function paintBody() {
   const { state } = store,
     body = store.bodyToShow(tab.shown);
-  if (!body || !body.view || !tab.viewer) return;
-  if (isNew("body", body)) tab.viewer.show(body.view);
+  if (!body || !body.view) return;
+  if (tab.viewer && isNew("body", body)) tab.viewer.show(body.view);
   tab.shown = body;
   const isPress = body.tell === "view",
     current = store.isCurrent(body.tell);
