@@ -131,6 +131,8 @@ class InTurn:
 
     def end(self) -> None:
         """At once."""
+        if self._last is not None:
+            self._last.cancel()
         if self._worker is not None:
             self._worker.end()
 
@@ -180,7 +182,7 @@ class Pool:
             stopping.add_done_callback(self._stopping.discard)
             raise
         except BaseException as error:
-            if isinstance(error, TimeoutError):  # it does not load
+            if isinstance(error, TimeoutError | ProcessDiedError):  # the end of its pipe is heard before it is gone
                 worker.end()
             self._put_back(worker)
             raise

@@ -83,11 +83,12 @@ def start_studio(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[
 
 @pytest.fixture(scope="session")
 def studio(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
-    """One for all tests that neither end it nor need another design."""
+    """One for all tests that neither end it nor need another design. It complains of nothing on the terminal."""
     found = Running(tmp_path_factory.mktemp("studio"), QUICK)
     yield found
-    if found.process.poll() is None:
-        found.end()
+    found.process.send_signal(signal.SIGINT)
+    said = found.process.communicate(timeout=20)[1]
+    assert "Traceback" not in said, said
 
 
 class Tab:
