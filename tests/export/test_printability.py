@@ -20,6 +20,8 @@ from foundation.errors import InputError
 from geometry.fabrication.part import LimitName
 from tests.cases import for_each
 
+pytestmark = pytest.mark.press
+
 FDM, SLA = printer_profile("fdm"), printer_profile("sla")
 UP = (0.0, 0.0, 1.0)
 

@@ -15,6 +15,8 @@ from geometry.fabrication.part import box, printer_profile, shape_volume_mm3
 from geometry.parameters import Effector
 from geometry.stack import layers
 
+pytestmark = pytest.mark.press
+
 EXACT = 1e-6
 DOME = Effector(shape="dome", diameter_mm=2.0, height_mm=0.8)
 CYLINDER = Effector(shape="cylinder", diameter_mm=1.6, height_mm=0.7)
