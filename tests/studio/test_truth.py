@@ -52,7 +52,7 @@ def test_a_busy_machine_is_blamed_and_not_the_numbers(start_studio, open_tab):
         tab.says("#link", "is being loaded on this machine", 60.0)
         tab.says("#view3d .shown", "parts at rest", 120.0)
         tab.says("#view3d .shown", "The coarse press", 240.0)
-        tab.says("#press .doing", "load step 1", 240.0)
+        until(lambda: any("load step 1" in one for one in tab.page.evaluate("window.said")), 240.0)
         said = tab.page.evaluate("window.said")
     assert not tab.page.locator("#said").is_visible()
     assert not any("absurd" in one or "failed" in one for one in said)
