@@ -111,9 +111,8 @@ SHARES = {"length of a segment under a dome": 1e-4}  # within more, contact come
 def test_sensitivity_is_the_difference_of_two_presses(case, monkeypatch):
     monkeypatch.setattr(solve.solution.march, "TIME_TOLERANCE", np.inf)  # the same times for all presses
     value, at = CASES[case]
-    small = (
-        SHARES.get(case, 1e-3) * value
-    )  # the difference of two presses, each exact to 1e-10, is then exact to 1e-7 of a press
+    # the difference of two presses, each exact to 1e-10, is then exact to 1e-7 of a press
+    small = SHARES.get(case, 1e-3) * value
     base = at(value)
     tet_mesh = build(base.segment, resolve_dot(base.dot, base.segment), MESHES.get(case, COARSE))
     variation = Variation(at(value - small), at(value + small), 2.0 * small)

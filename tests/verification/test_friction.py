@@ -285,9 +285,10 @@ def test_a_cap_that_slides_drags_with_about_the_coefficient_times_its_pressure()
 
 
 @pytest.mark.press
+@for_each("coefficient", [0.3, 0.8])
 @for_each("kind", ["plate", "cap"])
-def test_newton_needs_few_iterations(kind):
-    body = press(block(kind, 0.8, cells=3), 0.08)
+def test_newton_needs_few_iterations(kind, coefficient):
+    body = press(block(kind, coefficient, cells=3), 0.08)
     slide(body, (0.06, 0.02), 2)
     slide(body, (-0.06, 0.0), 4)
     assert max(body.iterations) <= 12
