@@ -136,7 +136,8 @@ class Follower:
     async def _changes_within(self, seconds: float) -> bool:
         """Whether there is another change in that time."""
         with suppress(TimeoutError):
-            await asyncio.wait_for(self._unchecked.wait(), seconds)
+            async with asyncio.timeout(seconds):
+                await self._unchecked.wait()
         return self._unchecked.is_set()
 
     async def _examine(self, origin: Origin) -> None:

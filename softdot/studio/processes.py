@@ -59,18 +59,28 @@ class Worker(WorkerProcess):
         """Wait for its libraries. ProcessDiedError, TimeoutError."""
         loading = asyncio.wrap_future(self._loaded)
         loading.add_done_callback(lambda done: done.cancelled() or done.exception())  # nobody may wait any more
-        await asyncio.wait_for(asyncio.shield(loading), LONGEST_LOAD_S)
+        async with asyncio.timeout(LONGEST_LOAD_S):
+            await asyncio.shield(loading)
 
     async def run(self, task: str, *arguments: Any, tell: Tell = lambda _: None) -> Any:
-        """What the task returns; it goes on where the waiting is cancelled. TaskRefused, ProcessDiedError."""
-        loop = asyncio.get_running_loop()
+        """What the task returns; it goes on where the waiting is cancelled, but tells nothing any more. TaskRefused,
+        ProcessDiedError.
+        """
+        loop, is_over = asyncio.get_running_loop(), Event()
+
+        def hear(value: Any) -> None:
+            if not is_over.is_set():
+                tell(value)
 
         def told(value: Any) -> None:
-            loop.call_soon_threadsafe(tell, value)
+            loop.call_soon_threadsafe(hear, value)
 
         self._task = asyncio.wrap_future(self.begin(do_task, task, arguments, tell=told))
         self._task.add_done_callback(lambda done: done.cancelled() or done.exception())  # nobody may wait any more
-        return await asyncio.shield(self._task)
+        try:
+            return await asyncio.shield(self._task)
+        finally:
+            is_over.set()
 
     async def stops(self) -> bool:
         """Whether the task stops soon when it is asked to, so that the process can be used again."""
@@ -121,7 +131,8 @@ class InTurn:
             worker = self.prepare()
             try:
                 await worker.until_warm()
-                return await asyncio.wait_for(worker.run(task, *arguments), self._longest_s)
+                async with asyncio.timeout(self._longest_s):
+                    return await worker.run(task, *arguments)
             except TimeoutError:
                 said = f"this machine did not answer within {self._longest_s:.0f} s, twice; it has much else to do"
             except ProcessDiedError:

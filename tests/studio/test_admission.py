@@ -1,11 +1,13 @@
-"""The queue in front of heavy work: as much as cores and memory bear, in order, and what is cancelled leaves it."""
+"""The queue in front of heavy work: as many as cores and memory bear, in order; what is cancelled leaves in silence."""
 
 import asyncio
+from concurrent.futures import Future
+from contextlib import suppress
 
 import pytest
 
 from softdot.studio.admission import Admission
-from softdot.studio.processes import TaskRefused
+from softdot.studio.processes import TaskRefused, Worker
 
 
 class Hall:
@@ -112,5 +114,35 @@ def test_a_task_that_fails_leaves_its_place_too():
                 raise TaskRefused("no")
         async with asyncio.timeout(1.0), admission.place(0.0, print):
             pass
+
+    asyncio.run(story())
+
+
+class ByHand(Worker):
+    """A process whose task is told by the test."""
+
+    def __init__(self):
+        self._task = None
+
+    def begin(self, *_, tell=None):
+        self.tell = tell
+        return Future()
+
+
+def test_what_a_cancelled_task_still_sends_is_not_told():
+    """Else a page that was told of its end would show it at work for ever."""
+
+    async def story():
+        worker, told = ByHand(), []
+        task = asyncio.create_task(worker.run("press:accurate_press", tell=told.append))
+        await settled()
+        worker.tell("step 1")
+        await settled()
+        task.cancel()
+        with suppress(asyncio.CancelledError):
+            await task
+        worker.tell("step 2")
+        await settled()
+        assert told == ["step 1"]
 
     asyncio.run(story())
