@@ -120,12 +120,12 @@ def case_solid(segment: Segment) -> Any:
     """
     outside = case_outer_box(segment)
     tray = upright_box(outside.half_x, outside.half_y, outside.bottom, outside.top)
+    cavities = []
     for bottom, top, gap in _cavities(segment):
         # cut through the open top, so that no skin is left there
         above = top + CASE_FLOOR_MM if top == outside.top else top
-        half_x, half_y = segment.length_mm / 2 + gap, segment.width_mm / 2 + gap
-        tray = (tray - upright_box(half_x, half_y, bottom, above)).solid()
-    return tray
+        cavities.append(upright_box(segment.length_mm / 2 + gap, segment.width_mm / 2 + gap, bottom, above))
+    return (tray - cavities).solid() if cavities else tray
 
 
 def case_outer_box(segment: Segment) -> Box:

@@ -36,7 +36,9 @@ def _of_face(face: Any) -> tuple[Floats, Ints]:
     nodes = (found.Node(number) for number in range(1, found.NbNodes() + 1))
     moved = nodes if place.IsIdentity() else (node.Transformed(move) for node in nodes)
     points = np.array([node.Coord() for node in moved]).reshape(-1, 3)
-    corners = np.array([each.Get() for each in found.Triangles()], dtype=np.int64) - 1
+    # one by one: to go through found.Triangles() takes ten times as long
+    each = (found.Triangle(number).Get() for number in range(1, found.NbTriangles() + 1))
+    corners = np.array([*each], dtype=np.int64) - 1
     if face.Orientation() == TopAbs_Orientation.TopAbs_REVERSED:
         corners = corners[:, [0, 2, 1]]
     return points, corners

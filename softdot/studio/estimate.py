@@ -6,6 +6,7 @@ line in logarithms, which holds over larger shifts than one in the numbers.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from math import exp, expm1, log
 from typing import Any
 
@@ -134,7 +135,8 @@ class Estimator:
         return found
 
 
-def _stated(text: str) -> dict[str, Any] | None:
+@lru_cache(maxsize=64)
+def _stated(text: str) -> Mapping[str, Any] | None:
     """Dotted keys of a text; None where it is no TOML."""
     try:
         return dotted(parse_toml(text, "design"))

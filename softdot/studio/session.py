@@ -25,6 +25,8 @@ INTO_FOLDER = {"kit": "files:kit", "report": "files:report"}
 """Long work that a tab may start: on the design alone, and into a folder."""
 QUICK = {"influences", "recording"}
 """Those that take seconds, and so do not queue behind those that take minutes."""
+OF_CHECKED = {"response", "goal"}
+"""Those that ask a design for its numbers, so that it is checked first."""
 MADE_BY = {"diagnosis": "verdict"}
 """Artefacts that are not called as the task that makes them."""
 Tell = Callable[[Json], None]
@@ -46,6 +48,7 @@ class Session:
         self._kept = KeptDesigns()
         self._recording: Path | None = None
         self._improved: str | None = None
+        self._asked: Json | None = None
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._folder = studio.scratch / name
         self._folder.mkdir(mode=0o700, exist_ok=True)
@@ -74,6 +77,9 @@ class Session:
     def _tell_all(self) -> None:
         """What is new of the artefacts, then the whole state."""
         self._is_due = False
+        if self._asked is not None and not self.state.wants_check:
+            asked, self._asked = self._asked, None
+            self.receive(asked)
         if self.line is None:
             return
         self._kept.renew(self.state)
@@ -190,7 +196,9 @@ class Session:
 
     def do_start(self, task: str, **asked: Any) -> None:
         """Long work: influences, tolerances, kit, report, plate, response, goal or diagnosis, with what it needs."""
-        if task in ON_DESIGN:
+        if task in OF_CHECKED and self.state.wants_check:
+            self._asked = {"do": "start", "task": task, **asked}
+        elif task in ON_DESIGN:
             self._begin(task, ON_DESIGN[task], self.text)
         elif task in INTO_FOLDER:
             self._begin(task, INTO_FOLDER[task], self.text, self._new_folder(task))

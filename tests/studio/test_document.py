@@ -108,7 +108,10 @@ Numbers = st.one_of(st.integers(-(10**9), 10**9), st.floats(allow_nan=False, all
 def test_any_name_and_number_comes_back(edits):
     document, expected = Document("# nothing\n"), {}
     for table, name, value in edits:
-        document.set([table, name], value)
+        anew = Document(document.text)
+        for one in (document, anew):
+            one.set([table, name], value)
+        assert document.text == anew.text
         expected.setdefault(table, {})[name] = value
     assert tomllib.loads(document.text) == expected
     assert document.text.startswith("# nothing")
