@@ -101,6 +101,31 @@ def box_questions(config: Config, box: ToleranceBox, keys: tuple[str, ...]) -> d
     return {f"all off at once, {number}": Question(config, keys, one) for number, one in enumerate(moved, 1)}
 
 
+class BoxProcess:
+    """Logarithms of the sizes of force and voltage over a box. nominal (2,) : at the nominal design.
+
+    finer : at the nominal design. coarser : at the places of the box.
+    """
+
+    def __init__(self, box: ToleranceBox, finer: LinearResponse, coarser: Sequence[LinearResponse]) -> None:
+        self._box = box
+        values, slopes = (np.array(part) for part in zip(*map(box.along, coarser), strict=True))
+        bent = slopes * (1.0 + box.relative * box.places)[:, :, None]
+        self._process = GradientProcess(box.logarithmic(box.places), values, bent)
+        self.nominal, slope = box.along(finer)
+        self._finer = self.nominal - values[0], slope - slopes[0]
+
+    def logs(self, places: Floats) -> Floats:
+        """At places (q, r), (q, 2)."""
+        at, (value, slope) = self._box.logarithmic(places), self._finer
+        return np.asarray(self._process.mean(at) + value + at @ slope)
+
+    @property
+    def missed(self) -> Floats:
+        """Root mean square (2,) of the relative errors at presses that are left out."""
+        return np.asarray(np.sqrt((np.expm1(self._process.left_out().error) ** 2).mean(axis=0)))
+
+
 def drawn(
     box: ToleranceBox,
     finer: LinearResponse,
@@ -117,19 +142,14 @@ def drawn(
     responses = [one.nominal for one in coarser] + [end for pair in ends for end in pair]
     if not signs.all() or any((np.sign(one) != signs).any() for one in responses):
         return None
-    values, slopes = (np.array(part) for part in zip(*map(box.along, coarser), strict=True))
-    bent = slopes * (1.0 + box.relative * box.places)[:, :, None]
-    process = GradientProcess(box.logarithmic(box.places), values, bent)
+    process = BoxProcess(box, finer, coarser)
     random = np.random.default_rng(SEED + 1)
-    places = random.uniform(-1.0, 1.0, (draws, len(box.rows)))
-    value, slope = box.along(finer)
-    logarithmic = box.logarithmic(places)
-    logs = process.mean(logarithmic) + (value - values[0]) + logarithmic @ (slope - slopes[0])
+    logs = process.logs(random.uniform(-1.0, 1.0, (draws, len(box.rows))))
     for pair in ends:
-        up, down = (np.log(np.abs(end)) - value for end in pair)
+        up, down = (np.log(np.abs(end)) - process.nominal for end in pair)
         off = random.uniform(-1.0, 1.0, (draws, 1))
         logs += 0.5 * (up - down) * off + 0.5 * (up + down) * off**2
-    missed = 100.0 * np.sqrt((np.expm1(process.left_out().error) ** 2).mean(axis=0))
+    missed = 100.0 * process.missed
     found = signs * np.exp(logs)
     return {
         "count": draws,
