@@ -30,7 +30,7 @@ from softdot.reading.line_filter.hypothesis_arrays import (
     column_of,
     kind_before,
 )
-from softdot.reading.line_filter.lateral import move_aside
+from softdot.reading.line_filter.lateral import LEFT, RIGHT, move_aside, step_aside
 from softdot.reading.line_filter.merging import merged
 from solve.compiled import piece
 
@@ -39,7 +39,7 @@ MOST_CHILDREN = 60_000
 MOST_OPTIONS = 12
 RARE_STEPS = 3
 """What a hand does rarely is tried in one of so many steps, as often as if it were tried in all of them."""
-CHANCE, CHANGE, NEW_WAY, TURN, CONTACT = range(5)
+CHANCE, CHANGE, NEW_WAY, TURN, CONTACT, ASIDE = range(6)
 """Columns of the ways in which a hypothesis may go on: log-probability, and what changes."""
 OLD_MM = 1.8
 """Way behind the array's middle at which a column that passed without contact is looked at no more."""
@@ -51,12 +51,13 @@ def advance(state, choice, memory, measured, temper, may_touch, turn, open_bits,
 
     temper : exponent of the likelihood. may_touch : whether lost contact may be found again. turn : of what is rare.
     open_bits : mask of the columns that are not given out yet.
-    room : four arrays for children, state (m, 4), choice (m, 5), number of the parent (m,) and bits of new columns.
+    room : four arrays for children, state (m, 4), choice (m, 5), number of the parent (m,) and bits of new columns
+    and of a step aside.
     """
     made, made_choice, parent, fresh = room
     count = 0
     top = state[:, LOG_WEIGHT].max()
-    options = np.empty((2, 3, MOST_OPTIONS, 5))
+    options = np.empty((2, 3, MOST_OPTIONS, 6))
     for touch in range(2):
         for way in range(3):
             _fill_options(options[touch, way], way - 1, touch, may_touch, turn, settings)
@@ -73,7 +74,7 @@ def advance(state, choice, memory, measured, temper, may_touch, turn, open_bits,
             )  # fmt: skip
             for child in range(begin, count):
                 parent[child] = h
-    agreed = merged(made, made_choice, memory, parent, count, top, open_bits, sensor.silent_mm)
+    agreed = merged(made, made_choice, memory, parent, fresh, count, top, open_bits, sensor.silent_mm)
     before = state[:, PLACE]
     agreed = agreed[_best_ones(made[agreed, LOG_WEIGHT], settings.kept_log, settings.most_weighed)]
     weight, learned = _weigh(
@@ -102,7 +103,7 @@ def _weigh(made, made_choice, memory, before, parent, fresh, agreed, measured, t
         own = parent[child]
         row, first, pattern = pattern_of(made[child, PLACE], made_choice, child, sensor)
         dots[k] = take_heights(memory, own, first, pattern, fresh[child], settings, found[k])
-        move_aside(memory, own, made[child, PLACE] - before[own], settings.fade, aside[k])
+        move_aside(memory, own, made[child, PLACE] - before[own], settings.fade, step_aside(fresh[child]), aside[k])
         at = (made_choice[child, YAW], row)
         made[child, LOG_WEIGHT] += log_evidence(
             memory, own, at, pattern, found[k], dots[k], aside[k], measured, temper, sensor, settings, channel[k]
@@ -139,10 +140,10 @@ def _log_sum(weights):  # type: ignore[no-untyped-def]
 
 @nb.njit(cache=True)
 def _fill_options(options, way, touch, may_touch, turn, settings):  # type: ignore[no-untyped-def]
-    """Fill the ways (12, 5) in which a hypothesis may go on, whose chances sum up to 1; others have none."""
+    """Fill the ways (12, 6) in which a hypothesis may go on, whose chances sum up to 1; others have none."""
     options[:, CHANCE], options[:, CHANGE] = -np.inf, 0.0
     options[:, NEW_WAY] = way
-    options[:, TURN] = 0
+    options[:, TURN], options[:, ASIDE] = 0, 0.0
     options[:, CONTACT] = touch
     usual = 1 if way == STILL else 3
     for k in range(1, usual):
@@ -170,6 +171,9 @@ def _fill_options(options, way, touch, may_touch, turn, settings):  # type: igno
             number += 1
     if touch == 1 and turn == 1:
         options[number, CHANCE], options[number, CONTACT] = settings.log_lift, 0
+        for bit in (LEFT, RIGHT):
+            number += 1
+            options[number, CHANCE], options[number, ASIDE] = settings.log_aside, bit
         number += 1
     elif touch == 0:
         options[number, CHANCE], options[number, CONTACT] = settings.log_touch, 1
@@ -220,6 +224,6 @@ def _children(state, choice, h, options, touch, way, one, made, made_choice, fre
             made[count, LOG_WEIGHT] = chance
             made_choice[count, WAY], made_choice[count, YAW] = way, yaw
             made_choice[count, TOUCH], made_choice[count, SEEN], made_choice[count, COLUMNS] = touch, seen, own
-            fresh[count] = (REAR if rears == 8 else 0) | (FRONT if fronts == 8 else 0)
+            fresh[count] = int(option[ASIDE]) | (REAR if rears == 8 else 0) | (FRONT if fronts == 8 else 0)
             count += 1
     return count

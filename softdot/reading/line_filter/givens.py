@@ -29,12 +29,12 @@ class HandMotion(NamedTuple):
     """Log-probabilities of a step, and constants of the weights.
 
     faster, jump : steps of the log-speed; relax, settle : shares of the way of log-speed and mean to each other in a
-    step. log_blank, log_dots (4,) : of a blank column, and of each other pattern, by kind_before. log_unseen :
-    of one that passes without contact. height, height_spread : mean and variance of the height of dots, as shares of
-    the nominal charge. rough : standard deviation of a charge over the charge; degrees : of Student's t. fade : what
-    is left of a wander across the line. gain_spread, least_gain_spread, gain_walk : variance of a gain at
-    first, at least, and by which it may change. kept_log : how far behind the best hypotheses are kept; most_weighed,
-    most_kept : how many of them the charges weigh, and how many are left then.
+    step. log_blank, log_dots (4,) : of a blank column, and of each other pattern, by kind_before. log_unseen : of one
+    that passes without contact. log_aside : of the array being elsewhere beside the line. height, height_spread : mean
+    and variance of the height of dots, as shares of the nominal charge. rough : standard deviation of a charge over the
+    charge; degrees : of Student's t. fade : what is left of a wander across the line. gain_spread, least_gain_spread,
+    gain_walk : variance of a gain at first, at least, and by which it may change. kept_log : how far behind the best
+    hypotheses are kept; most_weighed, most_kept : how many of them the charges weigh, and how many are left then.
     """
 
     step_s: float
@@ -50,6 +50,7 @@ class HandMotion(NamedTuple):
     log_turn: float
     log_lift: float
     log_touch: float
+    log_aside: float
     log_blank: Floats
     log_dots: Floats
     log_unseen: float

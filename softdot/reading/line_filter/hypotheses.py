@@ -31,9 +31,9 @@ SPEED_SPREAD_PER_SQRT_S, JUMP, JUMPS_PER_S = 0.5, 0.35, 0.5
 RELAX_S, SETTLE_S = 1.0, 2.0
 """Time in which the log-speed returns to its mean, and the mean follows the log-speed."""
 STOPS_PER_S, GOES_PER_S, BACKS_PER_S, FORTHS_PER_S = 0.3, 1.5, 0.3, 4.0
-TURNS_PER_S, LIFTS_PER_S, TOUCHES_PER_S = 0.2, 0.2, 6.0
-"""How often a hand stops and goes on, goes back and forth, turns by a step, loses and finds contact: all of this is
-assumed.
+TURNS_PER_S, LIFTS_PER_S, TOUCHES_PER_S, ASIDES_PER_S = 0.2, 0.2, 6.0, 0.1
+"""How often a hand stops and goes on, goes back and forth, turns by a step, loses and finds contact, and is found to be
+elsewhere beside the line: all of this is assumed.
 """
 UNSEEN_SHARE = 0.6
 """Weight of a column that passes without contact, beside the patterns that it may have: assumed."""
@@ -54,7 +54,7 @@ YAW_SPREAD_DEG = 6.0
 """Standard deviation of the turn of the array at the beginning, assumed."""
 FARTHEST_ASIDE_MM, ASIDE_SPREAD_MM = 2.4, 0.2
 """Lateral places with which a line begins, and the standard deviation of each: they are twice as far apart."""
-GAIN_SPREAD, LEAST_GAIN_SPREAD, GAIN_WALK = 0.2, 0.08, 0.02
+GAIN_SPREAD, LEAST_GAIN_SPREAD, GAIN_WALK = 0.35, 0.08, 0.02
 """Standard deviations of a gain at first and at least, and by how much it changes in the root of a second: assumed."""
 ROW_BESIDE = 0.1
 """Share of lost tracks in which the array lay one row of dots farther than was thought, to each side: assumed."""
@@ -99,6 +99,7 @@ def settings(step_s: float, is_mirrored: bool) -> HandMotion:
         log_turn=rarely(TURNS_PER_S),
         log_lift=rarely(LIFTS_PER_S),
         log_touch=often(TOUCHES_PER_S),
+        log_aside=rarely(ASIDES_PER_S),
         log_blank=np.log(blank),
         log_dots=np.log((1.0 - blank) / 7.0),
         log_unseen=log(UNSEEN_SHARE),
@@ -128,7 +129,9 @@ def _blank_columns(is_mirrored: bool) -> Floats:
 
 def early_settings(step_s: float, is_mirrored: bool) -> HandMotion:
     """The motion over the first column: what is rare is left out, and more hypotheses are kept."""
-    rare: dict[str, Any] = dict.fromkeys(("log_jump", "log_stop", "log_back", "log_turn", "log_lift"), -1e9)
+    rare: dict[str, Any] = dict.fromkeys(
+        ("log_jump", "log_stop", "log_back", "log_turn", "log_lift", "log_aside"), -1e9
+    )
     return settings(step_s, is_mirrored)._replace(most_weighed=4 * EARLY_KEPT, most_kept=EARLY_KEPT, **rare)
 
 

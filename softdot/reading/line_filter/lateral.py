@@ -19,6 +19,12 @@ LINE_MM, SLOPE, WANDER_MM, WANDER_S = 0.8, tan(radians(0.8)), 0.3, 0.5
 """Standard deviations of the line's place and slope and of the wander, and the correlation time of that: assumed."""
 LINE_A, LINE_B, WANDER, VAR_A, COV_AB, COV_AW, VAR_B, COV_BW, VAR_W = range(9)
 """Places of the means and covariances, behind LATERAL in a memory."""
+STEP_ASIDE_MM, STEP_SPREAD_MM = 0.6, 0.3
+"""How far away the array is looked for beside where it is thought to be, and the standard deviation there: one dot
+between two segments looks like two dots in front of them.
+"""
+LEFT, RIGHT = 4, 8
+"""Bits of such a step."""
 LEAST_OFFSET_MM, OFFSET_STEP_MM, OFFSETS = float(OFFSETS_MM[0]), float(OFFSETS_MM[1] - OFFSETS_MM[0]), len(OFFSETS_MM)
 
 
@@ -43,16 +49,26 @@ def lateral_place(memory, h):  # type: ignore[no-untyped-def]
 
 
 @piece()
-def move_aside(memory, h, way, fade, moved):  # type: ignore[no-untyped-def]
-    """Fill moved (9,) with means and covariances after a way in mm; fade : what is left of the wander by then."""
+def step_aside(bits):  # type: ignore[no-untyped-def]
+    """The step in mm that bits stand for."""
+    return STEP_ASIDE_MM * ((bits // RIGHT & 1) - (bits // LEFT & 1))
+
+
+@piece()
+def move_aside(memory, h, way, fade, step, moved):  # type: ignore[no-untyped-def]
+    """Fill moved (9,) with means and covariances after a way in mm and a step aside; fade : what is left of the wander
+    by then.
+    """
     a, b, w = memory[h, LATERAL + LINE_A], memory[h, LATERAL + LINE_B], memory[h, LATERAL + WANDER]
     ab, aw, bb = memory[h, LATERAL + COV_AB], memory[h, LATERAL + COV_AW], memory[h, LATERAL + VAR_B]
     bw, ww = memory[h, LATERAL + COV_BW], memory[h, LATERAL + VAR_W]
-    moved[LINE_A], moved[LINE_B], moved[WANDER] = a + way * b, b, fade * w
+    moved[LINE_A], moved[LINE_B], moved[WANDER] = a + step + way * b, b, fade * w
     moved[VAR_A] = memory[h, LATERAL + VAR_A] + way * (2.0 * ab + way * bb)
     moved[COV_AB], moved[COV_AW] = ab + way * bb, fade * (aw + way * bw)
     moved[VAR_B], moved[COV_BW] = bb, fade * bw
     moved[VAR_W] = fade * fade * ww + (1.0 - fade * fade) * WANDER_MM**2
+    if step != 0.0:
+        moved[VAR_A] += STEP_SPREAD_MM**2
 
 
 @piece()

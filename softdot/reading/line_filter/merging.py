@@ -13,7 +13,7 @@ from softdot.reading.line_filter.hypothesis_arrays import (
     WAY,
     YAW,
 )
-from softdot.reading.line_filter.lateral import lateral_place
+from softdot.reading.line_filter.lateral import lateral_place, step_aside
 from solve.compiled import piece
 
 PLACE_BIN_MM, SPEED_BIN, ASIDE_BIN_MM = 0.12, 0.18, 0.3
@@ -23,7 +23,7 @@ ROW_NEAR, ROW_FAR = 0x11, 0x44
 
 
 @nb.njit(cache=True)
-def merged(made, made_choice, memory, parent, count, top, open_bits, silent_mm):  # type: ignore[no-untyped-def]
+def merged(made, made_choice, memory, parent, fresh, count, top, open_bits, silent_mm):  # type: ignore[no-untyped-def]
     """Numbers of the children that stand for all that agree: the likeliest, with the weighed mean of the motions.
 
     open_bits : mask of the columns in which they must agree, those that are not given out yet. silent_mm : distance
@@ -38,7 +38,7 @@ def merged(made, made_choice, memory, parent, count, top, open_bits, silent_mm):
     total, most = np.zeros((count, 4)), np.empty(count)
     number = 0
     for child in range(count):
-        aside = lateral_place(memory, parent[child])
+        aside = lateral_place(memory, parent[child]) + step_aside(fresh[child])
         untold = ROW_NEAR if aside > silent_mm else ROW_FAR if aside < -silent_mm else 0
         key = _key(made[child], made_choice[child], aside, open_bits & ~untold)
         slot = key & (size - 1)

@@ -8,7 +8,18 @@ from geometry.braille_standards import standard
 from softdot.reading.cells import cells_of
 from softdot.reading.decoders.hand import track_hand
 from softdot.reading.line_filter.hypothesis_arrays import LATERAL, LOG_WEIGHT
-from softdot.reading.line_filter.lateral import LINE_MM, SLOPE, WANDER_MM, move_aside, place_spread, see, seen_at
+from softdot.reading.line_filter.lateral import (
+    LEFT,
+    LINE_MM,
+    SLOPE,
+    STEP_ASIDE_MM,
+    STEP_SPREAD_MM,
+    WANDER_MM,
+    move_aside,
+    place_spread,
+    see,
+    seen_at,
+)
 from softdot.reading.line_filter.merging import merged
 from softdot.reading.line_filter.table import OFFSETS_MM, YAWS_DEG, line_table
 from softdot.reading.told_line import track_warnings
@@ -19,11 +30,13 @@ OF_PLACE = np.array([1.0, 0.0, 1.0])
 
 
 @nb.njit
-def moved_and_seen(aside, way, fade, noise, slope, charge):
-    """Means and covariances (9,) after a way, and after a charge with a noise that changes by slope over the place."""
+def moved_and_seen(aside, way, fade, step, noise, slope, charge):
+    """Means and covariances (9,) after a way and a step aside, and after a charge with a noise that changes by slope over
+    the place.
+    """
     memory, found = np.zeros((1, LATERAL + 9)), np.empty(9)
     memory[0, LATERAL:] = aside
-    move_aside(memory, 0, way, fade, found)
+    move_aside(memory, 0, way, fade, step, found)
     before = found.copy()
     residual = charge - slope * (found[0] + found[2])
     see(found, slope / (noise + slope * slope * place_spread(found)), residual, slope)
@@ -47,12 +60,14 @@ def test_a_place_that_was_seen_is_that_of_the_prior_given_it():
 
 
 @pytest.mark.press
-def test_it_moves_and_learns_by_the_equations_of_kalman():
+@for_each("aside", [0.0, STEP_ASIDE_MM])
+def test_it_moves_and_learns_by_the_equations_of_kalman(aside):
     mean, spread = matrix(start := seen_at(-0.8, 0.3)[0])
     way, fade, noise, slope, charge = 1.7, 0.9, 9.0, 40.0, -20.0
     step = np.array([[1.0, way, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, fade]])
-    before, after = moved_and_seen(start, way, fade, noise, slope, charge)
-    mean, spread = step @ mean, step @ spread @ step.T + np.diag([0.0, 0.0, (1.0 - fade**2) * WANDER_MM**2])
+    before, after = moved_and_seen(start, way, fade, aside, noise, slope, charge)
+    added = [STEP_SPREAD_MM**2 if aside else 0.0, 0.0, (1.0 - fade**2) * WANDER_MM**2]
+    mean, spread = step @ mean + [aside, 0.0, 0.0], step @ spread @ step.T + np.diag(added)
     for known, expected in zip(matrix(before), (mean, spread), strict=True):
         np.testing.assert_allclose(known, expected, atol=1e-12)
     row = slope * OF_PLACE
@@ -63,14 +78,17 @@ def test_it_moves_and_learns_by_the_equations_of_kalman():
 
 
 @pytest.mark.press
-@for_each(("aside", "kept"), [(1.7, 1), (-1.7, 2), (0.5, 2)])
-def test_dots_of_a_row_that_is_not_felt_are_not_told_apart(aside, kept):
-    """Two hypotheses that differ in a dot of the first row of the last column, which an array at 1.7 mm cannot feel."""
+@for_each(("aside", "step", "kept"), [(1.7, 0, 1), (1.7, LEFT, 2), (-1.7, 0, 2), (0.5, 0, 2)])
+def test_dots_of_a_row_that_is_not_felt_are_not_told_apart(aside, step, kept):
+    """Two hypotheses that differ in a dot of the first row of the last column, which an array at 1.7 mm cannot feel, and
+    that are not one where it is looked for elsewhere.
+    """
     made, memory = np.zeros((2, 4)), np.zeros((1, LATERAL + 9 + 4))
     made[:, LOG_WEIGHT] = np.log([0.75, 0.25])
     memory[0, LATERAL] = aside
     choice = np.array([[1, 4, 1, 2, 0b0011], [1, 4, 1, 2, 0b0010]])
-    numbers = merged(made, choice, memory, np.zeros(2, dtype=np.int64), 2, 0.0, (1 << 16) - 1, 1.6)
+    fresh = np.array([0, step])
+    numbers = merged(made, choice, memory, np.zeros(2, dtype=np.int64), fresh, 2, 0.0, (1 << 16) - 1, 1.6)
     assert len(numbers) == kept
     assert made[numbers[0], LOG_WEIGHT] == pytest.approx(0.0 if kept == 1 else np.log(0.75))
 
