@@ -31,9 +31,7 @@ OF_PLACE = np.array([1.0, 0.0, 1.0])
 
 @nb.njit
 def moved_and_seen(aside, way, fade, step, noise, slope, charge):
-    """Means and covariances (9,) after a way and a step aside, and after a charge with a noise that changes by slope over
-    the place.
-    """
+    """Means and covariances (9,) after a way and a step, and after a charge that changes by slope over the place."""
     memory, found = np.zeros((1, LATERAL + 9)), np.empty(9)
     memory[0, LATERAL:] = aside
     move_aside(memory, 0, way, fade, step, found)
@@ -80,8 +78,9 @@ def test_it_moves_and_learns_by_the_equations_of_kalman(aside):
 @pytest.mark.press
 @for_each(("aside", "step", "kept"), [(1.7, 0, 1), (1.7, LEFT, 2), (-1.7, 0, 2), (0.5, 0, 2)])
 def test_dots_of_a_row_that_is_not_felt_are_not_told_apart(aside, step, kept):
-    """Two hypotheses that differ in a dot of the first row of the last column, which an array at 1.7 mm cannot feel, and
-    that are not one where it is looked for elsewhere.
+    """Two hypotheses that differ in a dot of the first row of the last column, which an array at 1.7 mm cannot feel.
+
+    They are two where one of them looks for the array elsewhere.
     """
     made, memory = np.zeros((2, 4)), np.zeros((1, LATERAL + 9 + 4))
     made[:, LOG_WEIGHT] = np.log([0.75, 0.25])
