@@ -41,7 +41,7 @@ BLANK = 0.3
 """Share of blank columns where nothing is known."""
 BLANK_CELLS, BLANK_AGAIN, BLANK_FIRST, BLANK_SECOND = 0.18, 0.03, 0.05, 0.2
 """Shares of cells that are blank, of those behind a blank one, and with a blank first or second column alone."""
-HEIGHT_MEAN, HEIGHT_SPREAD = 0.9, 0.25
+HEIGHT_MEAN, HEIGHT_SPREAD = 0.85, 0.3
 """Mean and standard deviation of what a dot gives over what a nominal one would, worn ones among them: assumed."""
 ROUGH_SHARE, DEGREES = 0.15, 4.0
 """Standard deviation of a charge over the charge, and degrees of freedom of Student's t."""
@@ -54,7 +54,7 @@ YAW_SPREAD_DEG = 6.0
 """Standard deviation of the turn of the array at the beginning, assumed."""
 FARTHEST_ASIDE_MM, ASIDE_SPREAD_MM = 2.4, 0.2
 """Lateral places with which a line begins, and the standard deviation of each: they are twice as far apart."""
-GAIN_SPREAD, LEAST_GAIN_SPREAD, GAIN_WALK = 0.35, 0.08, 0.02
+GAIN_SPREAD, LEAST_GAIN_SPREAD, GAIN_WALK = 0.3, 0.08, 0.02
 """Standard deviations of a gain at first and at least, and by how much it changes in the root of a second: assumed."""
 ROW_BESIDE = 0.1
 """Share of lost tracks in which the array lay one row of dots farther than was thought, to each side: assumed."""

@@ -15,7 +15,7 @@ from softdot.reading.line_filter.hypothesis_arrays import LATERAL
 from softdot.reading.line_filter.table import OFFSETS_MM
 from solve.compiled import piece
 
-LINE_MM, SLOPE, WANDER_MM, WANDER_S = 0.8, tan(radians(0.8)), 0.3, 0.5
+LINE_MM, SLOPE, WANDER_MM, WANDER_S = 0.8, tan(radians(0.8)), 0.3, 1.5
 """Standard deviations of the line's place and slope and of the wander, and the correlation time of that: assumed."""
 LINE_A, LINE_B, WANDER, VAR_A, COV_AB, COV_AW, VAR_B, COV_BW, VAR_W = range(9)
 """Places of the means and covariances, behind LATERAL in a memory."""

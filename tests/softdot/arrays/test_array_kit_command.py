@@ -121,7 +121,7 @@ def test_the_budget_presses_one_segment_held_as_its_grid_holds_it(tmp_path):
     assert (held.segment.boundary, held.segment.held_layers) == ("clamped", ("medium1", "film"))
 
 
-@pytest.mark.press
+@pytest.mark.evidence
 def test_whole_kit_of_a_pair(tmp_path, capsys):
     """With moulds, pictures and the budget of a lone segment, which is the budget of that segment itself."""
     from matplotlib.image import imread

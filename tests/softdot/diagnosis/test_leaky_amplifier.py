@@ -21,7 +21,7 @@ def test_the_motion_is_the_one_that_is_asked_for():
     assert np.interp(1.5, time, depth) == pytest.approx(0.0, abs=1e-9)
 
 
-@pytest.mark.press
+@pytest.mark.evidence
 def test_the_leak_is_named_with_its_resistance(tmp_path, monkeypatch):
     """Among the candidates of the amplifier, which need no press of the 3D model but the baseline's."""
     engine_for = engines.engine_for
