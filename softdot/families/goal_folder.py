@@ -81,8 +81,20 @@ def _content(family: Family, goal: Goal, found: MetGoal, pressed: dict[str, floa
             name: {"answered": answered[name], "pressed": pressed[name],
                    "off_percent": 100.0 * (answered[name] / pressed[name] - 1.0)} for name in known
         },
-        "warnings": [] if found.reached else [
+        "warnings": goal_warnings(goal, found, pressed[goal.enough]),
+    }  # fmt: skip
+
+
+def goal_warnings(goal: Goal, found: MetGoal, pressed: float) -> list[str]:
+    """Sentences on a goal that is not met, or that is met by the family and not by the press, with its size there."""
+    if not found.reached:
+        return [
             f"no design of this family gives {goal.enough} >= {goal.target:g} with a probability of "
             f"{goal.probability:g}; the nearest gives it with {found.probability:.3g}"
-        ],
-    }  # fmt: skip
+        ]
+    if pressed < goal.target:
+        return [
+            f"the press of this design, on a mesh of its own, gives {goal.enough} = {pressed:.4g}, "
+            f"{100.0 * (1.0 - pressed / goal.target):.2g} % less than {goal.target:g}: ask for that much more"
+        ]
+    return []

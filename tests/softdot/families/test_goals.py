@@ -5,6 +5,7 @@ import pytest
 
 from foundation.errors import InputError
 from softdot.families.goal import Goal, met_goal
+from softdot.families.goal_folder import goal_warnings
 from tests.softdot.families.test_families import family  # noqa: F401  (a fixture)
 
 VOLTAGE, FORCE = "open_circuit_voltage_V", "reaction_force_N"
@@ -49,3 +50,14 @@ def test_what_no_design_gives_is_said(family):  # noqa: F811
         met_goal(family, Goal("volts", 0.07, FORCE))
     with pytest.raises(InputError, match="none is left to choose"):
         met_goal(family, Goal(VOLTAGE, 0.07, FORCE, tuple(family.keys)))
+
+
+def test_a_press_that_falls_short_of_the_goal_is_told(family):  # noqa: F811
+    goal = Goal(VOLTAGE, 0.07, FORCE)
+    found = met_goal(family, goal)
+    assert goal_warnings(goal, found, 0.0701) == []
+    (said,) = goal_warnings(goal, found, 0.0693)
+    assert "open_circuit_voltage_V = 0.0693, 1 % less than 0.07" in said
+    unreached = Goal(VOLTAGE, 1.0, FORCE)
+    (said,) = goal_warnings(unreached, met_goal(family, unreached), 0.9)
+    assert "no design of this family" in said
