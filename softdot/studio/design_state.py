@@ -277,7 +277,7 @@ class DesignState:
     def artefacts(self) -> dict[str, Artefact]:
         """All that can be shown, by name; contents are told in messages of their own."""
         found = dict(self._made)
-        single = [one for one in self._presses.values() if one.quality != "array"]
+        single = [one for one, _ in self._read_presses()]
         for names, press in ((("numbers", "curves"), single[-1:]), (("view",), [self.shown_press])):
             for name in names:
                 if press and press[0] is not None:
@@ -306,24 +306,31 @@ class DesignState:
 
     def curves(self) -> list[Json]:
         """Presses of single segments, the last one last; what its amplifier reads is that of its circuit."""
-        found = [one for one in self._presses.values() if one.quality != "array"]
         return [
             {
                 "label": one.label,
                 "quality": one.quality,
                 "press_hash": one.origin.press_hash,
                 "revision": one.origin.revision,
-                "numbers": {**one.found["numbers"], "readout_voltage_V": self._reading(one)},
+                "numbers": {**one.found["numbers"], "readout_voltage_V": _reading(circuit)},
             }
-            for one in found
+            for one, circuit in self._read_presses()
         ]
 
-    def _reading(self, press: KnownPress) -> Any:
+    @property
+    def version_of_curves(self) -> list[tuple[int, int | None]]:
+        """Changes with the curves."""
+        return [(one.number, circuit and circuit.number) for one, circuit in self._read_presses()]
+
+    def _read_presses(self) -> list[tuple[KnownPress, Artefact | None]]:
+        """Presses of single segments, each with the circuit that reads it."""
+        return [(one, self._circuit_of(one)) for one in self._presses.values() if one.quality != "array"]
+
+    def _circuit_of(self, press: KnownPress) -> Artefact | None:
         made = self._made.get("circuit")
         if made is None or made.content["history"] != press.found["history"] or made.content["found"] is None:
             return None
-        is_stale = press is self.press and made.origin.text != self.text
-        return None if is_stale else made.content["found"]["readout_voltage_V"]
+        return None if press is self.press and made.origin.text != self.text else made
 
     @property
     def estimate(self) -> Json | None:
@@ -379,6 +386,10 @@ class DesignState:
             },
             "tasks": self.tasks,
         }  # fmt: skip
+
+
+def _reading(circuit: Artefact | None) -> Any:
+    return circuit and circuit.content["found"]["readout_voltage_V"]
 
 
 def _remember(known: OrderedDict[str, Any], text: str, found: Any) -> None:

@@ -19,10 +19,10 @@ def large_messages(state: DesignState) -> dict[str, tuple[Any, Content]]:
         if name == "numbers":
             continue
         version: Any = one.number
-        if name == "curves" and "circuit" in made:
-            version = one.number, made["circuit"].number, state.is_current("circuit", made["circuit"])
-        elif name == "view":
-            version = one.origin.press_hash, one.content.get("quality")
+        if name == "curves":
+            version = state.version_of_curves
+        elif name == "view":  # large, and the same again where the same is pressed again
+            version = one.origin.revision, one.origin.press_hash, one.content.get("quality")
         elif name == "response":
             version = one.number, state.estimator.version
         found[name] = version, partial(_content, state, name, one)

@@ -342,3 +342,37 @@ def test_a_kept_design_has_the_numbers_of_its_own_press():
     state.pressed(job, true_press(job.text, "coarse"), complete=False)
     kept.renew(state)
     assert kept.message()[1]()["designs"][0]["numbers"]["voltage"] == 10 * 0.47
+
+
+def pressed(state, thickness):
+    """Write, check and press."""
+    state.document.write(text_of(thickness, "a", 1))
+    state.edited()
+    state.checked(state.text, true_check(state.text))
+    job = state.press_begins()
+    state.pressed(job, true_press(state.text, "accurate"), complete=True)
+    state.press_ends(job)
+
+
+def test_curves_are_told_again_where_only_their_order_has_changed():
+    """Of three presses the first one and the last come back: the curves between have changed places."""
+    state, page = DesignState(text_of(0.4, "b", 1)), Page()
+    for thickness in (0.4, 0.47, 0.52):
+        pressed(state, thickness)
+    page.hear(state)
+    for thickness in (0.4, 0.52):
+        state.document.write(text_of(thickness, "a", 1))
+        state.edited()
+    page.hear(state)
+    assert [one["numbers"]["voltage"] for one in page.contents["curves"]["curves"]] == pytest.approx([4.7, 4.0, 5.2])
+
+
+def test_a_view_that_is_pressed_again_is_of_the_design_that_asked_for_it():
+    state, page = DesignState(text_of(0.4, "b", 1)), Page()
+    pressed(state, 0.4)
+    page.hear(state)
+    state.document.write(text_of(0.4, "b", 1))
+    state.edited()
+    pressed(state, 0.4)
+    page.hear(state)
+    assert page.contents["view"]["revision"] == page.state["artefacts"]["view"]["revision"]
