@@ -1,4 +1,4 @@
-"""One thread for each worker of pytest-xdist, random examples that depend on their seed alone, and a browser."""
+"""One thread for each worker of pytest-xdist, random examples that are the same in every run, and a browser."""
 
 import os
 import shutil
@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from hypothesis import settings
 from hypothesis.internal.conjecture import providers
 
 from foundation.thread_pools import ONE_THREAD_VARIABLES
@@ -15,6 +16,10 @@ if "PYTEST_XDIST_WORKER" in os.environ:  # set before a library that reads it is
 
 # Hypothesis mixes in constants of whatever modules are imported, which tests that ran before decide.
 providers.is_local_module_file = lambda _: False
+# A change is not judged by examples that another draw would not have met: --hypothesis-profile=explore draws new ones.
+settings.register_profile("repeatable", derandomize=True, database=None)
+settings.register_profile("explore", derandomize=False)
+settings.load_profile("repeatable")
 
 CHROMIUM = next(
     (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None

@@ -13,7 +13,11 @@ def _own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         yield
 
 
-@pytest.fixture(params=sorted(SAMPLES))
+LONGEST = "cylinder solid pytetwild"
+PARAMS = [pytest.param(name, marks=pytest.mark.press) if name == LONGEST else name for name in sorted(SAMPLES)]
+
+
+@pytest.fixture(params=PARAMS)
 def sample(request: pytest.FixtureRequest) -> tuple[str, TetMesh]:
     """Every sample segment, meshed once by each mesher that can."""
     return request.param, built(request.param)

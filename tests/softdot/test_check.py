@@ -66,7 +66,7 @@ def test_each_mistake_alone_is_the_sentence_of_a_run(checked, tmp_path, capfd):
     assert capfd.readouterr().err == err
 
 
-@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(invalid_configurations())
 def test_a_random_mistake_is_among_those_told(example):
     """Whatever else is set aside to look on: the sentence of a run comes first, and looking on ends."""

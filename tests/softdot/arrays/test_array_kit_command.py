@@ -46,6 +46,7 @@ def test_the_kit_of_a_cell_has_its_files(summary):
     assert {part["label"] for part in summary["parts"]} == {"base", "jig"}
 
 
+@pytest.mark.press
 def test_every_electrode_has_its_trace_and_its_capacitance(summary):
     """Relative permittivity 12, 2.3 x 2.3 mm, 28 um; no film between a trace and the common electrode."""
     film = summary["film"]
