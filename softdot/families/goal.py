@@ -3,10 +3,11 @@
 Numbers of a batch (a modulus of silicone, a height of a printed dot) are drawn over their ranges, the others chosen,
 by differential evolution (Storn and Price, J. Glob. Optim. 11, 1997) on the answers of the family. The same draws serve
 all designs, so that they differ by their numbers alone (a sample average: Kleywegt, Shapiro and Homem-de-Mello, SIAM J.
-Optim. 12, 2002).
+Optim. 12, 2002). What a full press gives, over what the family answers there, corrects its answers (space mapping:
+Bandler et al., IEEE Trans. Microw. Theory Tech. 42, 1994), since the press has a mesh of its own.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,13 +17,16 @@ from scipy.stats import qmc
 from foundation.arrays import Floats
 from foundation.errors import InputError
 from softdot.families.family import Family
-from softdot.families.quantity import FamilyQuantity
 
 SEARCH_DRAWS, TOLD_DRAWS, SEED = 256, 4096, 0
 """Batches of the search, and those of which the result is told; powers of two."""
 POPULATION, GENERATIONS = 12, 80
 MISSED = 1e6
 """Beyond all sizes of the quantity that is to be least: what a design that misses the goal counts."""
+
+
+MARGIN = 1e-3
+"""By which share a design is to give more than the goal, so that its press gives no less."""
 
 
 @dataclass(frozen=True)
@@ -54,19 +58,35 @@ class MetGoal:
     surely: float
 
 
-def met_goal(family: Family, goal: Goal) -> MetGoal:
-    """The best design of a family for a goal at full load. InputError for names that the family does not have."""
-    search = _Search(family, goal)
-    chosen = search.best()
-    return search.told(chosen)
+def met_goal(family: Family, goal: Goal, corrections: Mapping[str, float] | None = None) -> MetGoal:
+    """The best design of a family for a goal at full load. corrections : by which what a quantity is answered is
+    multiplied. InputError for names that the family does not have.
+    """
+    search = _Search(family, goal, corrections or {})
+    return search.told(search.best())
+
+
+def judged_goal(family: Family, goal: Goal, place: Floats, corrections: Mapping[str, float]) -> MetGoal:
+    """How the design at a place (d,) of a family meets a goal. InputError as of met_goal."""
+    search = _Search(family, goal, corrections)
+    return search.told(search.chosen_of(place))
+
+
+def corrections_by(answered: Mapping[str, float], pressed: Mapping[str, float]) -> dict[str, float]:
+    """What a press gives over what the family answers for the same design, by quantity; those that it answers with 0
+    stay as they are.
+    """
+    return {name: pressed[name] / answered[name] for name in pressed if answered.get(name)}
 
 
 class _Search:
     """Designs by their chosen places (c,), each with the same batches."""
 
-    def __init__(self, family: Family, goal: Goal) -> None:
-        self._goal, self._family = goal, family
-        self._enough, self._least = (_quantity(family, name) for name in (goal.enough, goal.least))
+    def __init__(self, family: Family, goal: Goal, corrections: Mapping[str, float]) -> None:
+        self._goal, self._family, self._corrections = goal, family, corrections
+        for name in (goal.enough, goal.least):
+            if name not in family.quantities:
+                raise InputError(f"'{name}': this family answers {', '.join(family.quantities)}")
         batch = _axes(family, goal.batch)
         self._batch = np.array(batch, dtype=int)
         self._chosen = np.array([n for n in range(family.space.count) if n not in batch], dtype=int)
@@ -83,12 +103,17 @@ class _Search:
         )  # fmt: skip
         return np.asarray(found.x)
 
+    def chosen_of(self, place: Floats) -> Floats:
+        """The chosen places (c,) of a place (d,)."""
+        return np.asarray(place[self._chosen])
+
     def told(self, chosen: Floats) -> MetGoal:
         """What a design gives over many batches."""
         places = self._places(chosen[None], self._batches(TOLD_DRAWS))[0]
-        enough, least = self._last(self._enough, places), self._last(self._least, places)
-        course = self._enough.course(places)
-        low = np.minimum(np.abs(course.low[:, -1]), np.abs(course.high[:, -1]))
+        enough, least = (self._sizes(name, places) for name in (self._goal.enough, self._goal.least))
+        course = self._family.quantities[self._goal.enough].course(places)
+        ratio = self._corrections.get(self._goal.enough, 1.0)
+        low = ratio * np.minimum(np.abs(course.low[:, -1]), np.abs(course.high[:, -1]))
         probability = float((enough >= self._goal.target).mean())
         middle = np.zeros(self._family.space.count)
         middle[self._chosen] = chosen
@@ -117,23 +142,18 @@ class _Search:
         """What designs (q, c) need; of those that miss the goal, or lie where nothing can be pressed, beyond MISSED."""
         places = self._places(chosen, batches)
         flat = places.reshape(-1, places.shape[-1])
-        enough, least = (self._last(one, flat).reshape(places.shape[:2]) for one in (self._enough, self._least))
+        names = self._goal.enough, self._goal.least
+        enough, least = (self._sizes(name, flat).reshape(places.shape[:2]) for name in names)
         missing = max(1.0 - self._goal.probability - 1.0 / len(batches), 0.0)  # by one draw on the safe side
         reached = np.quantile(enough, missing, axis=1, method="lower")
-        lacking = np.maximum(self._goal.target - reached, 0.0) / self._goal.target
+        lacking = np.maximum((1.0 + MARGIN) * self._goal.target - reached, 0.0) / self._goal.target
         good = self._family.region.holds(flat).reshape(places.shape[:2]).all(axis=1)
         return np.where(good & (lacking == 0.0), least.mean(axis=1), MISSED * (1.0 + lacking + 10.0 * ~good))
 
-    @staticmethod
-    def _last(quantity: FamilyQuantity, places: Floats) -> Floats:
-        """Sizes (q,) at full load."""
-        return np.abs(quantity.course_values(places)[:, -1])
-
-
-def _quantity(family: Family, name: str) -> FamilyQuantity:
-    if name not in family.quantities:
-        raise InputError(f"'{name}': this family answers {', '.join(family.quantities)}")
-    return family.quantities[name]
+    def _sizes(self, name: str, places: Floats) -> Floats:
+        """Of a quantity at full load (q,)."""
+        answered = self._family.quantities[name].course_values(places)[:, -1]
+        return np.asarray(self._corrections.get(name, 1.0) * np.abs(answered))
 
 
 def _axes(family: Family, names: Sequence[str]) -> list[int]:

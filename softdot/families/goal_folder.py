@@ -1,5 +1,6 @@
 """The folder of a goal: the design as a configuration, and goal.json with what a full press of it gives."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +9,7 @@ import tomlkit
 from foundation.arrays import Floats
 from softdot.families.family import Family
 from softdot.families.folder import load_family
-from softdot.families.goal import Goal, MetGoal, met_goal
+from softdot.families.goal import Goal, MetGoal, corrections_by, judged_goal, met_goal
 from softdot.json_files import plain, write_json
 from softdot.output import Product, staged_folder
 from softdot.prepared_press import PreparedPress
@@ -16,6 +17,8 @@ from softdot.progress import Logged, Progress
 from softdot.summary import history
 from solve.solution.full_load import StoppedShortError
 
+MOST_PRESSES = 4
+"""Of designs that are sought one after the other, each corrected by the press before."""
 GOAL = Product("softdot-goal/1", "goal.json", frozenset({"goal.json", "design.toml"}))
 
 
@@ -27,14 +30,32 @@ def run_goal(folder: Path, goal: Goal, out: Path, progress: Progress | None = No
     told = progress or Logged()
     family = load_family(folder)
     with staged_folder(out, GOAL) as staging:
-        told.stage("search")
-        found = met_goal(family, goal)
-        told.stage("press")
-        pressed = _pressed(family, found.place)
+        found, pressed = _sought(family, goal, told)
         summary: dict[str, Any] = plain(_content(family, goal, found, pressed))
         (staging / "design.toml").write_text(design_text(family, found, goal), "utf-8")
         write_json(staging / GOAL.summary, summary)
     return summary
+
+
+def _sought(family: Family, goal: Goal, told: Progress) -> tuple[MetGoal, list[dict[str, float]]]:
+    """The best design, judged by its press, and the presses that led there; the last one is its own."""
+    corrections: dict[str, float] = {}
+    pressed: list[dict[str, float]] = []
+    while True:
+        told.stage("search")
+        found = met_goal(family, goal, corrections)
+        is_within_reach = found.reached
+        told.stage("press")
+        pressed.append(_pressed(family, found.place))
+        corrections = corrections_by(_answered(family, found.place), pressed[-1])
+        found = judged_goal(family, goal, found.place, corrections)
+        if found.reached or not is_within_reach or len(pressed) == MOST_PRESSES:
+            return found, pressed
+
+
+def _answered(family: Family, place: Floats) -> dict[str, float]:
+    """Sizes at full load by the family."""
+    return {name: abs(float(one.course_values(place[None])[0, -1])) for name, one in family.quantities.items()}
 
 
 def design_text(family: Family, found: MetGoal, goal: Goal) -> str:
@@ -60,10 +81,8 @@ def _pressed(family: Family, place: Floats) -> dict[str, float]:
     }
 
 
-def _content(family: Family, goal: Goal, found: MetGoal, pressed: dict[str, float]) -> dict[str, Any]:
-    answered = {
-        name: abs(float(one.course_values(found.place[None])[0, -1])) for name, one in family.quantities.items()
-    }
+def _content(family: Family, goal: Goal, found: MetGoal, presses: list[dict[str, float]]) -> dict[str, Any]:
+    answered, pressed = _answered(family, found.place), presses[-1]
     known = [name for name in pressed if name in answered]
     ranges = family.space.ranges
     return {
@@ -81,20 +100,16 @@ def _content(family: Family, goal: Goal, found: MetGoal, pressed: dict[str, floa
             name: {"answered": answered[name], "pressed": pressed[name],
                    "off_percent": 100.0 * (answered[name] / pressed[name] - 1.0)} for name in known
         },
-        "warnings": goal_warnings(goal, found, pressed[goal.enough]),
+        "presses": len(presses),
+        "warnings": goal_warnings(goal, found, presses),
     }  # fmt: skip
 
 
-def goal_warnings(goal: Goal, found: MetGoal, pressed: float) -> list[str]:
-    """Sentences on a goal that is not met, or that is met by the family and not by the press, with its size there."""
-    if not found.reached:
-        return [
-            f"no design of this family gives {goal.enough} >= {goal.target:g} with a probability of "
-            f"{goal.probability:g}; the nearest gives it with {found.probability:.3g}"
-        ]
-    if pressed < goal.target:
-        return [
-            f"the press of this design, on a mesh of its own, gives {goal.enough} = {pressed:.4g}, "
-            f"{100.0 * (1.0 - pressed / goal.target):.2g} % less than {goal.target:g}: ask for that much more"
-        ]
-    return []
+def goal_warnings(goal: Goal, found: MetGoal, presses: Sequence[object]) -> list[str]:
+    """Sentences on a goal that no press has borne out."""
+    if found.reached:
+        return []
+    return [
+        f"no design of this family was found that gives {goal.enough} >= {goal.target:g} with a probability of "
+        f"{goal.probability:g}; the last of {len(presses)} that were pressed gives it with {found.probability:.3g}"
+    ]

@@ -320,7 +320,7 @@ class DesignState:
     @property
     def version_of_curves(self) -> list[tuple[int, int | None]]:
         """Changes with the curves."""
-        return [(one.number, circuit and circuit.number) for one, circuit in self._read_presses()]
+        return [(one.number, circuit.number if circuit else None) for one, circuit in self._read_presses()]
 
     def _read_presses(self) -> list[tuple[KnownPress, Artefact | None]]:
         """Presses of single segments, each with the circuit that reads it."""

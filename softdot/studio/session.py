@@ -335,7 +335,7 @@ class Session:
     def _seek(self, goal: DesignGoal) -> None:
         """Move the numbers of the design to where it meets a goal, by a family where there is one. InputError."""
         text, family = self.text, self._family
-        law = self.state.estimator.law(text)
+        law, press = self.state.estimator.law(text), self.state.press
         if family is None and law is None:
             raise InputError(
                 "nothing is known yet of how this design follows its numbers: its accurate press tells, and some "
@@ -344,7 +344,7 @@ class Session:
 
         async def work(tell: Tell) -> Json:
             if family is not None:
-                asked = "press", "goal:by_family", family, text, goal.as_dict()
+                asked = "press", "goal:by_family", family, text, goal.as_dict(), press and press.answer
                 found: Json = await self._studio.solve.run(*asked, tell=tell)
             else:
                 found = await self._studio.check.run("goal:by_law", law, goal.as_dict())

@@ -13,7 +13,7 @@ from foundation.errors import InputError
 from softdot.config.toml import key_path
 from softdot.families.family import Family
 from softdot.families.folder import load_family
-from softdot.families.goal import Goal, met_goal
+from softdot.families.goal import Goal, corrections_by, met_goal
 from softdot.studio.document import Document
 from softdot.studio.estimate import QUANTITIES
 from softdot.studio.work.design import config_of
@@ -68,14 +68,23 @@ def _least(cost: Any, enough: Any, lacking: float, ends: tuple[Any, Any], reach:
     return found.x[: len(cost)] - found.x[len(cost) :] if found.success else None
 
 
-def by_family(folder: str, text: str, goal: Mapping[str, Any]) -> dict[str, Any]:
+def by_family(
+    folder: str, text: str, goal: Mapping[str, Any], pressed: Sequence[float] | None = None
+) -> dict[str, Any]:
     """As by_law, from a family of designs of which this is one but for its numbers: the best of its whole range.
 
+    pressed : force, charge and voltage of its press, where there is one, which correct what the family answers.
     InputError for a design of which the family is not.
     """
     family = _family(folder)
     _of_family(family, text, np.zeros(family.space.count))
-    found = met_goal(family, Goal(OF_FAMILY[goal["enough"]], goal["target"], OF_FAMILY[goal["least"]]))
+    corrections = {}
+    answered = answer(folder, text) if pressed is not None else None
+    if answered is not None and pressed is not None:
+        sizes = {key: abs(answered[name]["value"]) for name, key in OF_FAMILY.items()}
+        corrections = corrections_by(sizes, dict(zip(OF_FAMILY.values(), np.abs(pressed), strict=True)))
+    asked = Goal(OF_FAMILY[goal["enough"]], goal["target"], OF_FAMILY[goal["least"]])
+    found = met_goal(family, asked, corrections)
     changes = _changes(family, found.place)
     return {"changes": changes, "reached": found.reached, "gives": found.enough[1], "by": "family"}
 
