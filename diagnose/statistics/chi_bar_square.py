@@ -3,12 +3,15 @@
 Kudo, Biometrika 50 (1963) 403; Shapiro, Int. Stat. Rev. 56 (1988) 49; Silvapulle and Sen, Constrained Statistical
 Inference, 2005, section 3.4. The weight of j degrees of freedom is the chance that just j parameters come out positive:
 w_j = sum over faces a, |a| = j, of P(N(0, I_aa^-1) > 0) P(N(0, I_bb - I_ba I_aa^-1 I_ab) > 0), b the others.
+Both covariances come from a triangle R with R' R = I, whose square alone would lose what nearly parallel columns differ
+by: with a before b they are (R_aa' R_aa)^-1 and R_bb' R_bb, and no rounding makes them indefinite.
 """
 
 from itertools import combinations
 from math import comb
 
 import numpy as np
+from scipy.linalg import solve_triangular
 from scipy.stats import chi2, multivariate_normal
 from scipy.stats import f as f_distribution
 
@@ -20,19 +23,19 @@ ORTHANT_ERROR = 1e-3  # of the others, relative: no level is better known
 ROUGH_ERROR, LEAST_ERROR = 1e-3, 1e-5  # absolute, of a first estimate and of what is next to nothing
 
 
-def chi_bar_weights(information: Floats) -> Floats:
-    """Weights (q + 1,) of 0 to q degrees of freedom for an information matrix (q, q) of non-negative parameters.
+def chi_bar_weights(columns: Floats) -> Floats:
+    """Weights (q + 1,) of 0 to q degrees of freedom for columns (n, q), the sensitivities to non-negative parameters.
 
-    ValueError for more than MOST_NON_NEGATIVE parameters.
+    n is at least q, and the columns are independent, in any units. ValueError for more than MOST_NON_NEGATIVE.
     """
-    count = len(information)
+    count = columns.shape[1]
     if count > MOST_NON_NEGATIVE:
         raise ValueError(f"{count} non-negative parameters in one candidate; at most {MOST_NON_NEGATIVE}")
     found = np.zeros(count + 1)
     left_out = _degrees_by_difference(count)
     for positive in set(range(count + 1)) - set(left_out):
         for face in combinations(range(count), positive):
-            found[positive] += _face_probability(information, list(face))
+            found[positive] += _face_probability(columns, face)
     for positive in left_out:
         found[positive] = max(0.5 - found[positive % 2 :: 2].sum(), 0.0)
     return np.asarray(found / found.sum())  # the sum is one but for the numerical orthants
@@ -82,14 +85,13 @@ def _numerical_orthant(correlation: Floats, error: float) -> float:
     return float(law.cdf(np.zeros(len(correlation))))
 
 
-def _face_probability(information: Floats, face: list[int]) -> float:
-    """Probability that just the parameters of a face come out positive, for an information matrix (q, q)."""
-    others = [n for n in range(len(information)) if n not in face]
-    inner = np.asarray(np.linalg.inv(information[np.ix_(face, face)]), dtype=np.float64)
-    across = information[np.ix_(others, face)]
-    return orthant_probability(inner) * orthant_probability(
-        information[np.ix_(others, others)] - across @ inner @ across.T
-    )
+def _face_probability(columns: Floats, face: tuple[int, ...]) -> float:
+    """Probability that just the parameters of a face come out positive, for columns (n, q)."""
+    others = [n for n in range(columns.shape[1]) if n not in face]
+    triangle, first = np.linalg.qr(columns[:, [*face, *others]], mode="r"), len(face)
+    inverse = solve_triangular(triangle[:first, :first], np.eye(first))
+    outer = triangle[first:, first:]
+    return orthant_probability(inverse @ inverse.T) * orthant_probability(outer.T @ outer)
 
 
 def f_tail(statistic: float, degrees: int, noise_degrees: float) -> float:

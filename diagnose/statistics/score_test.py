@@ -51,9 +51,7 @@ def score_test(
     statistic = float(along @ along + target @ target - misfit**2)
     p_value = f_tail(statistic, len(bounded) + basis.shape[1], noise_degrees) if statistic > 0.0 else 1.0
     if p_value > NEGLIGIBLE_P_VALUE:
-        p_value = chi_bar_survival(
-            statistic, chi_bar_weights(_scale_to_unit_diagonal(triangle.T @ triangle)), basis.shape[1], noise_degrees
-        )
+        p_value = chi_bar_survival(statistic, chi_bar_weights(triangle), basis.shape[1], noise_degrees)
     estimate = np.zeros(len(non_negative))
     estimate[np.flatnonzero(non_negative)[bounded]] = positive
     left = residual - sensitivities @ estimate
@@ -77,12 +75,6 @@ def _independent_columns(columns: Floats, basis: Floats) -> list[int]:
             kept.append(n)
             basis = np.column_stack([basis, left / np.linalg.norm(left)])
     return kept
-
-
-def _scale_to_unit_diagonal(information: Floats) -> Floats:
-    """Scale an information matrix (q, q) to a unit diagonal: weights do not depend on units."""
-    scale = np.sqrt(np.diag(information))
-    return np.asarray(information / np.outer(scale, scale))
 
 
 def holm_p_values(p_values: Floats) -> Floats:
