@@ -50,6 +50,8 @@ class Candidate:
     stated_as : nuisance parameter by which rig.toml says how uncertain it is, such as "offset_mm"; "" for none.
     identical_to : names of what would be the very same element of the model, and is no candidate of its own.
     either_sign : parameters whose sign nobody can tell, as the rig is its own mirror image: told without one.
+    told : values -> numbers by which the verdict tells it where parameters will not do: each is the same quantity at
+    all values, and no modulus that is fitted beside it is a part of it. None: the parameters.
     """
 
     mechanism: str
@@ -64,6 +66,7 @@ class Candidate:
     stated_as: str = ""
     identical_to: tuple[tuple[str, str], ...] = ()
     either_sign: tuple[str, ...] = ()
+    told: Callable[[Sequence[float]], dict[str, Any]] | None = None
 
     @property
     def traits(self) -> Traits:

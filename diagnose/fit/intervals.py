@@ -127,16 +127,21 @@ def _derived(one: Setting) -> dict[str, float]:
 
 
 def _told(one: Setting) -> dict[str, float]:
-    """Parameters, and derived quantities where the model has an answer, of a setting by name."""
-    return _flat({**one.candidate.parameters(one.values), **_derived(one)})
+    """Numbers of the verdict, and derived quantities where the model has an answer, of a setting by name."""
+    return {**_numbers(one), **_flat(_derived(one))}
+
+
+def _numbers(one: Setting) -> dict[str, float]:
+    """Numbers of the verdict of a setting, but for what is derived, by name."""
+    return _flat((one.candidate.told or one.candidate.parameters)(one.values))
 
 
 def _quantity(one: Setting, name: str) -> float:
-    """A parameter or derived quantity of a setting. NoAnswerError.
+    """A number of the verdict or derived quantity of a setting. NoAnswerError.
 
-    What a simpler law has no number for is 0: the quality of one RC stage.
+    What a simpler law has no number for is 0: the quality of one RC stage, the modulus of a branch that is off.
     """
-    given = _flat(one.candidate.parameters(one.values))
+    given = _numbers(one)
     if name in given:
         return given[name]
     with rejected():

@@ -88,7 +88,8 @@ def _numerical_orthant(correlation: Floats, error: float) -> float:
 def _face_probability(columns: Floats, face: tuple[int, ...]) -> float:
     """Probability that just the parameters of a face come out positive, for columns (n, q)."""
     others = [n for n in range(columns.shape[1]) if n not in face]
-    triangle, first = np.linalg.qr(columns[:, [*face, *others]], mode="r"), len(face)
+    triangle: Floats = np.linalg.qr(columns[:, [*face, *others]])[1]
+    first = len(face)
     inverse = solve_triangular(triangle[:first, :first], np.eye(first))
     outer = triangle[first:, first:]
     return orthant_probability(inverse @ inverse.T) * orthant_probability(outer.T @ outer)

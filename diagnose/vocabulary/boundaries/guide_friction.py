@@ -46,9 +46,15 @@ def _guide(force_N: float, travel_mm: float) -> Candidate:
     def derived(values: Sequence[float]) -> dict[str, float]:
         return sliding(**parameters(values))
 
+    forces = {f"friction_within_{travel:.3g}_mm_N": n for n, travel in enumerate(travels)}
+
+    def told(values: Sequence[float]) -> dict[str, Any]:
+        return {name: force_N * values[n] for name, n in forces.items() if values[n] > 0.0}
+
     units = {"friction_force_N": "N", "presliding_mm": "mm", "sliding_friction_N": "N", "half_of_it_within_mm": "mm"}
+    units |= dict.fromkeys(forces, "N")
     everyday = {"sliding_friction_N": EVERYDAY * force_N}
-    return Candidate(GUIDE_FRICTION.name, "rig", coordinates, parameters, derived, units, everyday=everyday)
+    return Candidate(GUIDE_FRICTION.name, "rig", coordinates, parameters, derived, units, everyday=everyday, told=told)
 
 
 def sliding(friction_force_N: Sequence[float], presliding_mm: Sequence[float]) -> dict[str, float]:

@@ -43,8 +43,13 @@ def _plays(scene: Scene, widths: Sequence[float], of_push: Sequence[float], low:
         both = {"play_shares": shown[0], "play_pC": shown[1]}
         return both | ({"push_shares": pushed[0], "push_play_pC": pushed[1]} if of_push else {})
 
+    def told(values: Sequence[float]) -> dict[str, Any]:
+        plays = zip(names, values, (*widths, *of_push), strict=True)
+        kinds = ((name.partition("behind")[0], value, width * largest_pC) for name, value, width in plays)
+        return {f"{push}share_behind_{play:.3g}_pC": value for push, value, play in kinds if value}
+
     units = {"play_shares": "", "play_pC": "pC", "push_shares": "", "push_play_pC": "pC"}
-    return Candidate(HYSTERESIS.name, "film", coordinates, parameters, units=units)
+    return Candidate(HYSTERESIS.name, "film", coordinates, parameters, units=units, told=told)
 
 
 def _acting(values: Sequence[float], widths: Sequence[float], largest_pC: float) -> tuple[list[float], list[float]]:
@@ -56,7 +61,7 @@ def _acting(values: Sequence[float], widths: Sequence[float], largest_pC: float)
 register(
     Vocabulary(
         HYSTERESIS,
-        "the charge of {} lags behind its strain, at any rate (hysteresis)",
+        "the response of {} lags behind its strain, at any rate (hysteresis)",
         of_segment=of_segment,
         of_unknown_geometry=of_unknown_geometry,
         kind=REMEMBERS,

@@ -90,7 +90,10 @@ _FOAM = {"mu_MPa": "MPa", "alpha": "", "poisson_ratio": "", "force_ratio": ""}
 
 
 def _of_specimen(material: Hyperfoam) -> Candidate:
-    """Another exponent: the higher, the earlier and flatter the plateau. The small-strain moduli stay."""
+    """Another exponent: the higher, the earlier and flatter the plateau. The small-strain moduli stay.
+
+    mu is not told, since the modulus that is fitted beside it multiplies it.
+    """
     most = log(min(20.0, max(LARGEST_EXPONENT / max(map(abs, material.alpha)), 1.2)))
     coordinate = Coordinate("log_alpha", -log(20.0), most, (0.5 * most, -log(2.0)))
 
@@ -101,8 +104,11 @@ def _of_specimen(material: Hyperfoam) -> Candidate:
             "poisson_ratio": list(material.poisson_ratio),
         }
 
+    def told(values: Sequence[float]) -> dict[str, Any]:
+        return {name: each for name, each in parameters(values).items() if name != "mu_MPa"}
+
     units = {"mu_MPa": "MPa", "alpha": "", "poisson_ratio": ""}
-    return PartOfLayer(FOAM_DENSIFICATION.name, SPECIMEN, (coordinate,), parameters, units=units)
+    return PartOfLayer(FOAM_DENSIFICATION.name, SPECIMEN, (coordinate,), parameters, units=units, told=told)
 
 
 def _as_foam(material: Material) -> Hyperfoam:

@@ -143,7 +143,11 @@ def _of_layer(
 
 
 def _of_specimen(material: Material, point: MaterialPoint, travel_mm: float, by_force: bool) -> Candidate:
-    """force_ratio is that at the largest travel, with over without."""
+    """force_ratio is that at the largest travel, with over without.
+
+    Terms are told by their shares of the small-strain modulus, since a modulus that is fitted beside them multiplies
+    all constants: mu alpha / 2 over the shear modulus of Ogden's (Ogden 1972), c20 and c30 over c10.
+    """
     unknown = point.kinematics.initial_unknowns(np.array([travel_mm]), point.poisson_ratio)
     law = Stiffening(material, point.kinematics.principal_stretch(unknown[0]), point.kinematics.lateral, by_force)
     without = _force(point, travel_mm)
@@ -153,8 +157,17 @@ def _of_specimen(material: Material, point: MaterialPoint, travel_mm: float, by_
         stiff = with_mechanisms(layer_model(material, 1.0), [mechanism]).materials[LAYER]
         return {"force_ratio": _force(replace(point, law=stiff.law), travel_mm) / without}
 
+    def told(values: Sequence[float]) -> dict[str, Any]:
+        constants = {name.removesuffix("_MPa"): np.array(each) for name, each in law.parameters(values).items()}
+        if "c10" in constants:
+            return {f"{name}_over_c10": float(constants[name] / constants["c10"]) for name in ("c20", "c30")}
+        shares = constants["mu"] * constants["alpha"] / (2.0 * material.shear_modulus_MPa)
+        return {"share_of_modulus": shares.tolist(), "alpha": constants["alpha"].tolist()}
+
     units = {"c10_MPa": "MPa", "c20_MPa": "MPa", "c30_MPa": "MPa", "mu_MPa": "MPa", "alpha": "", "force_ratio": ""}
-    return PartOfLayer(HYPERELASTIC_STIFFENING.name, SPECIMEN, law.coordinates, law.parameters, derived, units)
+    return PartOfLayer(
+        HYPERELASTIC_STIFFENING.name, SPECIMEN, law.coordinates, law.parameters, derived, units, told=told
+    )
 
 
 def _force(point: MaterialPoint, travel_mm: float) -> float:

@@ -129,20 +129,29 @@ def spectrum(
     """The candidate at a component, one coordinate a branch by its time.
 
     make : its class. shares : the share of the branches that does not flow, where the rest does; none where nothing
-    does.
+    does. Branches that are off are no parameters, so that a number in the list of these is now one branch and now
+    another: a branch is told by its time.
     """
     count, times_s = len(branches), tuple(branches)
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
         moduli, times = _branches(values[:count], times_s)
         series = {"relative_moduli": moduli, "relaxation_times_s": times}
-        return {**series, "flowing_share": 1.0 - values[count]} if shares else series
+        return {**series, **flowing(values)}
+
+    def told(values: Sequence[float]) -> dict[str, Any]:
+        series = zip(*_branches(values[:count], times_s), strict=True)
+        return {**{f"relative_modulus_at_{time:.3g}_s": g for g, time in series}, **flowing(values)}
+
+    def flowing(values: Sequence[float]) -> dict[str, float]:
+        return {"flowing_share": 1.0 - values[count]} if shares else {}
 
     def derived(values: Sequence[float]) -> dict[str, float]:
         return {"relaxed_fraction": relaxed_fraction(*_branches(values[:count], times_s))}
 
     units = {"relative_moduli": "", "relaxation_times_s": "s", "flowing_share": "", "relaxed_fraction": ""}
-    return make(VISCOELASTICITY.name, component, (*branches.values(), *shares), parameters, derived, units)
+    coordinates = (*branches.values(), *shares)
+    return make(VISCOELASTICITY.name, component, coordinates, parameters, derived, units, told=told)
 
 
 def _branches(values: Sequence[float], times_s: Sequence[float]) -> tuple[list[float], list[float]]:

@@ -236,6 +236,26 @@ def test_an_answer_from_the_last_one_is_the_same(kind):
     assert len(quick.last["run", len(TIME)]) == len(TIME)
 
 
+@for_each("kind", KINDS)
+def test_a_number_that_is_told_is_the_same_quantity_at_all_values(kind):
+    """Where one coordinate is off the others have the names that they have where it is next to nothing."""
+    for one in engine(kind, MATERIALS[2]).candidates:
+        on = np.array([0.5 * min(coordinate.starts, key=abs) for coordinate in one.coordinates])
+        for n in range(len(on)):
+            off, nothing = (numbers_told(one, np.where(np.arange(len(on)) == n, value, on)) for value in (0.0, 1e-9))
+            for name in off.keys() & nothing.keys():
+                assert off[name] == pytest.approx(nothing[name], rel=1e-6, abs=1e-6), (one.name, name)
+
+
+def numbers_told(one, values):
+    """By name, a list taken apart."""
+    return {
+        (name, n): number
+        for name, each in (one.told or one.parameters)(values).items()
+        for n, number in enumerate(np.ravel(each))
+    }
+
+
 def test_the_improved_material_is_one_that_a_segment_can_be_made_of():
     of = engine()
     settings = [
@@ -254,7 +274,10 @@ def test_the_improved_material_is_one_that_a_segment_can_be_made_of():
     })  # fmt: skip
     law = config.materials["mine"]
     assert isinstance(law, Ogden)
-    assert 0.5 * np.dot(law.mu_MPa, law.alpha) == pytest.approx(1.25 * 1.2 / (2.0 * 1.499))
+    shares = 0.5 * np.multiply(law.mu_MPa, law.alpha)
+    assert shares.sum() == pytest.approx(1.25 * 1.2 / (2.0 * 1.499))
+    told = settings[0].candidate.told(settings[0].values)
+    np.testing.assert_allclose(told["share_of_modulus"], shares / shares.sum())
     assert [one.component for one in config.mechanisms] == ["medium2"]
 
 
