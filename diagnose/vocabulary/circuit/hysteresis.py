@@ -46,7 +46,7 @@ def _plays(scene: Scene, widths: Sequence[float], of_push: Sequence[float], low:
     def told(values: Sequence[float]) -> dict[str, Any]:
         plays = zip(names, values, (*widths, *of_push), strict=True)
         kinds = ((name.partition("behind")[0], value, width * largest_pC) for name, value, width in plays)
-        return {f"{push}share_behind_{play:.3g}_pC": value for push, value, play in kinds if value}
+        return {f"{push}share_behind_{float(f'{play:.3g}'):g}_pC": value for push, value, play in kinds if value}
 
     units = {"play_shares": "", "play_pC": "pC", "push_shares": "", "push_play_pC": "pC"}
     return Candidate(HYSTERESIS.name, "film", coordinates, parameters, units=units, told=told)

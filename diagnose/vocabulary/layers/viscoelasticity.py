@@ -141,7 +141,7 @@ def spectrum(
 
     def told(values: Sequence[float]) -> dict[str, Any]:
         series = zip(*_branches(values[:count], times_s), strict=True)
-        return {**{f"relative_modulus_at_{time:.3g}_s": g for g, time in series}, **flowing(values)}
+        return {**{f"relative_modulus_at_{float(f'{time:.3g}'):g}_s": g for g, time in series}, **flowing(values)}
 
     def flowing(values: Sequence[float]) -> dict[str, float]:
         return {"flowing_share": 1.0 - values[count]} if shares else {}
