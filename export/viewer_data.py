@@ -2,6 +2,7 @@
 
 import base64
 from collections.abc import Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -176,6 +177,7 @@ def colour_maps() -> dict[str, str]:
     return {name: base64_array(triples, np.uint8) for name, triples in colour_map_bytes().items()}
 
 
+@cache
 def colour_map_bytes() -> dict[str, NDArray[np.uint8]]:
     """256 RGB triples of each of the colour maps of the pictures."""
     import matplotlib

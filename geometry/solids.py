@@ -29,9 +29,9 @@ def layer_solids(segment: Segment, film_thickness_mm: float = 0.0) -> dict[str, 
 
 def upright_box(half_x: float, half_y: float, bottom: float, top: float) -> Any:
     """A box centred on the z axis, in mm."""
-    from build123d import Pos, Solid
+    from build123d import Plane, Solid
 
-    return Pos(-half_x, -half_y, bottom) * Solid.make_box(2 * half_x, 2 * half_y, top - bottom)
+    return Solid.make_box(2 * half_x, 2 * half_y, top - bottom, Plane((-half_x, -half_y, bottom)))
 
 
 def sphere(radius: float) -> Any:
