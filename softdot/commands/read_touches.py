@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from softdot.console import GOOD, only_the_summary_on_stdout, show
+from softdot.console import GOOD, NOT_CONVERGED, only_the_summary_on_stdout, show
 from softdot.json_files import plain, write_json
 from softdot.log import warn
 from softdot.output import Product, staged_folder
@@ -15,7 +15,7 @@ from softdot.version import installed_version
 if TYPE_CHECKING:
     from argparse import Namespace
 
-LEARNED = Product("softdot-learned-kernel/2", "kernel.json", frozenset({"kernel.json", "kernel.npz"}))
+LEARNED = Product("softdot-learned-kernel/3", "kernel.json", frozenset({"kernel.json", "kernel.npz"}))
 TOUCHES = Product("softdot-touches/1", "cells.json", frozenset({"cells.json", "cells.csv", "cells.npz"}))
 OF_EVERY_COMMAND = {"command", "output", "json", "quiet", "verbose"}
 
@@ -83,7 +83,7 @@ def command(chosen: Namespace) -> int:
     with only_the_summary_on_stdout():
         summary = run_touches(Path(chosen.kernel), Path(chosen.recording), Path(chosen.output), chosen.among or "all")
     show(summary, chosen, touches_text)
-    return GOOD
+    return GOOD if summary["is_of_the_sensor"] else NOT_CONVERGED
 
 
 def _refuse_others(chosen: Namespace, known: set[str], beside: str) -> None:

@@ -8,13 +8,17 @@ from scipy.special import softmax
 from foundation.arrays import Bools, Floats, Ints
 from foundation.errors import InputError
 from softdot.reading.cells import KINDS_OF_CELL
-from softdot.reading.learned_kernel.courses import STEPS, courses_of
+from softdot.reading.learned_kernel.courses import STEPS, courses_of, noise_at_rest
 from softdot.reading.learned_kernel.kernel_file import LearnedKernel
 from softdot.reading.learned_kernel.scores import along_axes, scores_of_touches
 from softdot.reading.learned_kernel.touches import SAME_SHARE, Touches, clipped_channels, letter_cells
 
 PLACE_SHARE = 0.1
 """Of the learned way: by which a touch may begin later or end earlier."""
+STILL, FOREIGN_SHARE, NOISE_RATIO = 0.25, 0.1, 5.0
+"""Changes of a touch, over the noise at rest, below which the sensor is dead; share of touches unlike all learned ones,
+and factor of the noise at rest, from which on a recording is of another kind (assumed).
+"""
 
 
 @dataclass(frozen=True)
@@ -22,14 +26,16 @@ class TouchAnswers:
     """Probabilities (n, 64) of the cells of touches and their scores.
 
     by_dots_alone (n,) : the best cells by superposition alone. unlike (n,) : whether a touch agrees less with every
-    cell than any touch did that was left out while learning. together : number, count and probabilities (64,) of
-    touches of one cell.
+    cell than any touch did that was left out while learning, or changes less than the noise at rest. foreign : whether
+    so many do that nothing is stated of the recording. together : number, count and probabilities (64,) of touches of
+    one cell.
     """
 
     probability: Floats
     log_score: Floats
     by_dots_alone: Ints
     unlike: Bools
+    foreign: bool
     together: list[tuple[int, int, Floats]]
     among: str
     warnings: list[str]
@@ -42,7 +48,8 @@ def answer_touches(kernel: LearnedKernel, touches: Touches, among: str) -> Touch
     """
     _refuse_others(kernel, touches)
     courses = courses_of(touches, kernel.about["rest_kept"], kernel.about["place_range_mm"])
-    moved = along_axes(kernel, courses[:, :, np.array(kernel.about["channels_heard"]) - 1])
+    heard = courses[:, :, np.array(kernel.about["channels_heard"]) - 1]
+    moved, weighed = along_axes(kernel, heard), heard * kernel.weight
     barred = _barred(kernel, among)
     score = scores_of_touches(kernel, moved)
     dots = scores_of_touches(kernel, moved, by_dots_alone=True)
@@ -52,15 +59,18 @@ def answer_touches(kernel: LearnedKernel, touches: Touches, among: str) -> Touch
         rows = np.flatnonzero(touches.together == number)
         own = len(rows) ** -kernel.about["shared_error"] * score[rows].sum(axis=0)
         together.append((int(number), len(rows), softmax(trust * own + barred)))
-    unlike = score.max(axis=1) < kernel.about["least_score"]
+    still = weighed.std(axis=1).max(axis=1) < STILL
+    unlike = still | (score.max(axis=1) < kernel.about["least_score"])
+    warnings = _foreign_signs(kernel, weighed, still, unlike)
     return TouchAnswers(
         probability=softmax(trust * score + barred, axis=1),
         log_score=score,
         by_dots_alone=(dots + barred).argmax(axis=1),
         unlike=unlike,
+        foreign=bool(warnings),
         together=together,
         among=among,
-        warnings=_warnings(touches, int(unlike.sum())),
+        warnings=[*_warnings(touches, kernel, weighed, int(still.sum()), int(unlike.sum())), *warnings],
     )
 
 
@@ -102,16 +112,41 @@ def _refuse_others(kernel: LearnedKernel, touches: Touches) -> None:
         )
 
 
-def _warnings(touches: Touches, unlike: int) -> list[str]:
-    """Clipped channels, and how many touches are unlike all that were learned."""
+def _foreign_signs(kernel: LearnedKernel, weighed: Floats, still: Bools, unlike: Bools) -> list[str]:
+    """By what a recording with the heard channels weighed (n, t, c) is of another kind than the learned ones."""
     found = []
+    learned = kernel.about["noise_at_rest"]
+    noise = learned if still.all() else noise_at_rest(weighed[~still])
+    if learned > 0.0 and not learned / NOISE_RATIO <= noise <= learned * NOISE_RATIO:
+        found.append(
+            f"the noise at rest is {noise / learned:.2g} of that of the learned touches: other units, or another gain; "
+            "nothing is stated"
+        )
+    if unlike.mean() >= FOREIGN_SHARE:
+        found.append(
+            f"{100 * unlike.mean():.0f} % of the touches are of another kind than the learned ones: nothing is stated"
+        )
+    return found
+
+
+def _warnings(touches: Touches, kernel: LearnedKernel, weighed: Floats, still: int, unlike: int) -> list[str]:
+    """Clipped and dead channels, and how many touches are unlike all that were learned."""
+    found, count = [], len(touches.taxels)
     clipped = clipped_channels(touches.taxels)
     if clipped:
         told = ", ".join(f"{number} ({100 * share:.0f} %)" for number, share in clipped.items())
         found.append(f"channels with many values at their least or largest one, clipped perhaps: {told}")
-    if unlike:
+    dead = [kernel.about["channels_heard"][number] for number in np.flatnonzero(np.ptp(weighed, axis=(0, 1)) == 0.0)]
+    if dead and still < count:
+        found.append(f"channels that never change, though the kernel needs them: {', '.join(map(str, dead))}")
+    if still:
         found.append(
-            f"{unlike} of {len(touches.taxels)} touches are unlike all that were learned, so '?' for them: "
-            "no Braille, another way over it, or other units"
+            f"{still} of {count} touches change less than the noise at rest of the learned ones, so '?' for them: no "
+            "contact, a dead sensor, or other units"
+        )
+    if unlike > still:
+        found.append(
+            f"{unlike - still} of {count} touches are unlike all that were learned, so '?' for them: "
+            "no Braille, another way over it, exchanged channels, or other units"
         )
     return found

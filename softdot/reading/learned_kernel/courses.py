@@ -34,6 +34,12 @@ def means_in_steps(values: Floats) -> Floats:
     return np.asarray(np.diff(total[:, low] * (1.0 - share) + total[:, low + 1] * share, axis=1) * STEPS / samples)
 
 
+def noise_at_rest(courses: Floats) -> float:
+    """Root mean square by which courses (n, STEPS, c) change within the part before any dot."""
+    before = courses[:, : max(1, round(REST_SHARE * STEPS))]
+    return float(np.sqrt(np.mean(before.var(axis=1))))
+
+
 def shift_courses(courses: Floats, steps: Floats | float) -> Floats:
     """Courses (n, t, c) that come as many steps (n,) earlier, the values at the ends held."""
     count, length, _ = courses.shape

@@ -11,7 +11,7 @@ from foundation.arrays import Floats, Ints
 from foundation.errors import InputError
 from foundation.table_checksum import table_checksum
 
-FORMAT = "softdot-learned-kernel/2"
+FORMAT = "softdot-learned-kernel/3"
 NPZ, JSON, CHECKSUM = "kernel.npz", "kernel.json", "checksum_sha256"
 AGAIN = "learn it again by softdot read --learn"
 TABLES = ("centre", "weight", "axes", "mean", "dot_mean", "variance", "scatter", "shift_steps")

@@ -11,7 +11,14 @@ from foundation.errors import InputError
 from softdot.progress import Progress
 from softdot.reading.cells import DOTS
 from softdot.reading.learned_kernel.cell_process import Expected, expect_cells, parts_of_covariance
-from softdot.reading.learned_kernel.courses import REST_SHARE, STEPS, courses_of, place_range_of, shift_courses
+from softdot.reading.learned_kernel.courses import (
+    REST_SHARE,
+    STEPS,
+    courses_of,
+    noise_at_rest,
+    place_range_of,
+    shift_courses,
+)
 from softdot.reading.learned_kernel.kernel_file import LearnedKernel
 from softdot.reading.learned_kernel.scatter import scatter_of_cells
 from softdot.reading.learned_kernel.scores import along_axes, scores_by_cause, scores_of_touches
@@ -62,6 +69,7 @@ def learn_kernel(touches: Touches, keep_rest: bool, progress: Progress) -> Learn
             "duration_s": touches.duration_s,
             "place_range_mm": place_range,
             "rest_kept": keep_rest,
+            "noise_at_rest": noise_at_rest(courses * kernel.weight),
             "touches_of_cells": {str(cell): int(np.sum(cells == cell)) for cell in np.unique(cells)},
             "lag_steps": lag,
             "share_of_dots": share_of_dots(kernel),

@@ -25,16 +25,20 @@ def answers_content(kernel: LearnedKernel, touches: Touches, answers: TouchAnswe
         for number, (row, unlike) in enumerate(zip(answers.probability, answers.unlike, strict=True))
     ]
     for row in rows:
-        row["answer"] = UNKNOWN if row["unlike"] else row["answer"]
+        row["answer"] = UNKNOWN if row["unlike"] or answers.foreign else row["answer"]
     if touches.cells is not None:
         for row, cell in zip(rows, touches.cells, strict=True):
             row["true"] = braille([int(cell)])
     together = [{"together": number, "touches": count, **_cell_content(row)} for number, count, row in answers.together]
-    scored = {} if touches.cells is None else {"score": _rates(touches.cells, answers.probability)}
+    for row in together if answers.foreign else []:
+        row["answer"] = UNKNOWN
+    stated = np.array([row["answer"] != UNKNOWN for row in rows])
+    scored = {} if touches.cells is None else {"score": _rates(touches.cells, answers.probability, stated)}
     return {
         "cells": "".join(row["answer"] for row in rows),
         "stated_at": STATED_AT,
         "among": answers.among,
+        "is_of_the_sensor": not answers.foreign,
         **scored,
         "dots_alone_agree": float(np.mean(answers.by_dots_alone == answers.probability.argmax(axis=1))),
         "touches": rows,
@@ -54,10 +58,10 @@ def _cell_content(probability: Floats) -> dict[str, Any]:
     return {"answer": best[0]["cell"] if probability.max() >= STATED_AT else UNKNOWN, "best": best}
 
 
-def _rates(true: Ints, probability: Floats) -> dict[str, Any]:
+def _rates(true: Ints, probability: Floats, stated: Bools) -> dict[str, Any]:
     """Shares of cells and dots that are right, of stated cells too, with Wilson's intervals."""
     first = probability.argmax(axis=1)
-    right, stated = first == true, probability.max(axis=1) >= STATED_AT
+    right = first == true
     dots = (true ^ first)[:, None] >> np.arange(DOTS) & 1 == 0
     return {
         "cells": _rate(right),

@@ -1,5 +1,6 @@
 """Recorded touches of single cells: NPZ files with the values of all channels over time, and the letters touched."""
 
+import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,12 +13,15 @@ from foundation.errors import InputError
 from foundation.files import regular_file_size
 from geometry.braille_cells import FIRST_CELL
 from softdot.braille_text.english import english_table
+from softdot.log import warn
 from softdot.reading.cells import KINDS_OF_CELL
 
-LARGEST_MB, LEAST_SAMPLES = 1000, 8
-"""Size of a file that is read, and samples of a touch that are needed."""
+LARGEST_MB, LEAST_SAMPLES, LARGEST_VALUE = 1000, 8, 1e30
+"""Size of a file that is read, samples of a touch that are needed, and a bound of values, whose squares are needed."""
 SAME_SHARE = 0.02
 """By which sampling rates and durations of one sensor may differ."""
+ARRAYS = ("taxels", "sampling_Hz", "letter", "place_mm", "together")
+"""What is read of a file."""
 CLIPPED_SHARE = 0.05
 """Of the values of a channel: where as many are its least or largest one, it is told as clipped."""
 
@@ -58,7 +62,13 @@ def load_touches(path: Path) -> Touches:
     arrays = _arrays_of(path, where)
     for name in ("taxels", "sampling_Hz"):
         if name not in arrays:
-            raise InputError(f"{where}: {name} is missing; taxels (touch, time, channel) and sampling_Hz are needed")
+            raise InputError(
+                f"{where}: {name} is missing among {', '.join(arrays)[:200] or 'no array'}; taxels (touch, time, "
+                "channel) and sampling_Hz are needed"
+            )
+    others = [name for name in arrays if name not in ARRAYS]
+    if others:
+        warn([f"{where}: {', '.join(others)[:200]}: not read; arrays that are: {', '.join(ARRAYS)}"])
     taxels = _finite(arrays["taxels"], f"{where}: taxels")
     if taxels.ndim != 3 or 0 in taxels.shape:
         raise InputError(f"{where}: taxels has the shape {taxels.shape}, it must be (touch, time, channel)")
@@ -124,6 +134,8 @@ def _arrays_of(path: Path, where: str) -> dict[str, Any]:
     size = regular_file_size(path, where)
     if size > 1e6 * LARGEST_MB:
         raise InputError(f"{where}: has {size / 1e6:.0f} MB, at most {LARGEST_MB} MB are read")
+    if not zipfile.is_zipfile(path):
+        raise InputError(f"{where}: is no NPZ file, as numpy.savez writes it with taxels and sampling_Hz")
     try:
         with np.load(path, allow_pickle=False) as file:
             return {name: file[name] for name in file.files}
@@ -135,9 +147,11 @@ def _finite(values: Any, what: str) -> Floats:
     """The values as floats. InputError for others than finite numbers."""
     if not (np.issubdtype(values.dtype, np.integer) or np.issubdtype(values.dtype, np.floating)):
         raise InputError(f"{what}: holds {values.dtype}, numbers are needed")
-    wrong = np.argwhere(~np.isfinite(values))
+    wrong = np.argwhere(~(np.abs(values) < LARGEST_VALUE))
     if len(wrong):
-        raise InputError(f"{what}{[int(one) for one in wrong[0]]}: is not finite; leave that touch out")
+        value = values[tuple(wrong[0])]
+        told = f"is {value:g}, it must be below {LARGEST_VALUE:g}" if np.isfinite(value) else "is not finite"
+        raise InputError(f"{what}{[int(one) for one in wrong[0]]}: {told}; leave that touch out")
     return np.asarray(values, dtype=np.float64)
 
 

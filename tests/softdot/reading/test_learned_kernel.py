@@ -145,6 +145,8 @@ def with_nan():
     [
         (with_nan(), "taxels[3, 2, 1]: is not finite"),
         (damaged(taxels=np.ones((32, 40))), "taxels has the shape (32, 40)"),
+        (damaged(taxels=np.full((32, 40, 6), 1e200)), "taxels[0, 0, 0]: is 1e+200, it must be below 1e+30"),
+        ({"signals": np.ones(3)}, "taxels is missing among signals"),
         (damaged(sampling_Hz=0.0), "sampling_Hz must be one number above 0"),
         (damaged(letter=np.array(["ß"] * 32)), "letter[0] = 'ß'"),
         (damaged(letter=np.array(["a"] * 31)), "one text for each of the 32 touches"),
@@ -157,6 +159,12 @@ def with_nan():
 def test_touches_that_nothing_can_be_learned_from_are_one_sentence(arrays, says, tmp_path, capfd):
     np.savez(tmp_path / "bad.npz", **arrays)
     assert says in refused(["--learn", tmp_path / "bad.npz"], tmp_path / "out", capfd)
+
+
+def test_a_file_that_is_no_npz_is_one_sentence(tmp_path, capfd):
+    for content in (b"", b"time_s,voltage_1_V\n0,1\n"):
+        (tmp_path / "touches.npz").write_bytes(content)
+        assert "is no NPZ file" in refused(["--learn", tmp_path / "touches.npz"], tmp_path / "out", capfd)
 
 
 def test_recordings_of_another_sensor_are_one_sentence(folder, tmp_path, capfd):
@@ -181,15 +189,40 @@ def test_another_rate_is_read(kernel, usual):
     np.testing.assert_allclose(answer_touches(kernel, double, "all").probability, usual, atol=0.1)
 
 
-def test_what_is_no_braille_is_never_a_cell(folder, tmp_path, capfd):
+@for_each(
+    "changed, says",
+    [
+        (
+            lambda values: 3.0 + np.random.default_rng(5).standard_normal(values.shape).cumsum(axis=1),
+            "24 of 24 touches are unlike all that were learned",
+        ),
+        (lambda values: np.full_like(values, 7.0), "24 of 24 touches change less than the noise at rest"),
+        (lambda values: 0.1 * values, "of that of the learned touches: other units"),
+        (lambda values: values[:, :, [1, 0, 2, 3, 5, 4]], "touches are of another kind than the learned ones"),
+        (lambda values: values[:, ::-1], "touches are of another kind than the learned ones"),
+    ],
+    ids=["noise", "dead", "other units", "exchanged channels", "backward"],
+)
+def test_what_is_no_braille_of_this_sensor_is_never_a_cell(changed, says, folder, tmp_path, capfd):
     made = made_touches("abcdef", 4)
-    made["taxels"] = 3.0 + np.random.default_rng(5).standard_normal(made["taxels"].shape).cumsum(axis=1)
-    np.savez(tmp_path / "noise.npz", **made)
-    command = ["read", "--kernel", str(folder / "kernel"), "--recording", str(tmp_path / "noise.npz"), "--json", "-q"]
-    assert main([*command, "-o", str(tmp_path / "out")]) == 0
+    np.savez(tmp_path / "other.npz", **{**made, "taxels": changed(made["taxels"])})
+    command = ["read", "--kernel", str(folder / "kernel"), "--recording", str(tmp_path / "other.npz"), "--json", "-q"]
+    assert main([*command, "-o", str(tmp_path / "out")]) == 3
     told, said = capfd.readouterr()
     assert json.loads(told)["cells"] == "?" * 24
-    assert "24 of 24 touches are unlike all that were learned" in said
+    assert says in said
+
+
+def test_a_dead_channel_and_arrays_that_are_not_read_are_told(folder, tmp_path, capfd):
+    made = made_touches("abcdef", 4)
+    made["taxels"][:, :, 3] = 3.0
+    made["letters"] = made.pop("letter")
+    np.savez(tmp_path / "other.npz", **made)
+    command = ["read", "--kernel", str(folder / "kernel"), "--recording", str(tmp_path / "other.npz"), "-q"]
+    main([*command, "-o", str(tmp_path / "out")])
+    said = capfd.readouterr().err
+    assert "channels that never change, though the kernel needs them: 4" in said
+    assert "letters: not read" in said
 
 
 def test_touches_are_compared_over_the_place_where_it_was_measured():
