@@ -10,7 +10,7 @@ from foundation.errors import InputError
 from softdot.reading.cells import KINDS_OF_CELL
 from softdot.reading.learned_kernel.courses import STEPS, courses_of, noise_at_rest
 from softdot.reading.learned_kernel.kernel_file import LearnedKernel
-from softdot.reading.learned_kernel.scores import along_axes, scores_of_touches
+from softdot.reading.learned_kernel.scores import scores_of_touches
 from softdot.reading.learned_kernel.touches import SAME_SHARE, Touches, clipped_channels, letter_cells
 
 PLACE_SHARE = 0.1
@@ -49,10 +49,10 @@ def answer_touches(kernel: LearnedKernel, touches: Touches, among: str) -> Touch
     _refuse_others(kernel, touches)
     courses = courses_of(touches, kernel.about["rest_kept"], kernel.about["place_range_mm"])
     heard = courses[:, :, np.array(kernel.about["channels_heard"]) - 1]
-    moved, weighed = along_axes(kernel, heard), heard * kernel.weight
+    weighed = heard * kernel.views[0].weight
     barred = _barred(kernel, among)
-    score = scores_of_touches(kernel, moved)
-    dots = scores_of_touches(kernel, moved, by_dots_alone=True)
+    score = scores_of_touches(kernel.views, heard)
+    dots = scores_of_touches(kernel.views, heard, by_dots_alone=True)
     trust = kernel.about["trust_among_learned" if among == "learned" else "trust"]
     together = []
     for number in [] if touches.together is None else np.unique(touches.together):

@@ -1,7 +1,8 @@
 """A Gaussian process over the 64 cells and the lateral places: what one axis of a touch is expected to be for each.
 
-Its covariance over cells is that of a constant, of one independent part for each raised dot, and of a part that is
-alike in cells which differ by few dots; all of them are alike at places that are near.
+Its covariance over cells is that of a constant, of one independent part for each raised dot, and of parts that are
+alike in cells of which the left column, the right one or both differ by few dots; all of them are alike at places that
+are near.
 """
 
 from dataclasses import dataclass
@@ -13,11 +14,11 @@ from scipy.optimize import minimize
 from foundation.arrays import Floats, Ints
 from softdot.reading.cells import DOTS, KINDS_OF_CELL
 
-LIKENESS_DOTS, LOAD_EXPONENT = 1.5, 0.25
-"""Number of dots over which likeness falls by e; an answer to n dots falls as n to the minus exponent, as they share
-the load.
+LIKENESS_DOTS, LOAD_EXPONENT = 1.5, 0.15
+"""Number of dots over which likeness falls by e; an answer to a dot falls as the number of dots, and that of those in
+its column, to the minus exponent, as they share the load.
 """
-USUAL_SHARES, PULL, MOST_STEPS = (0.3, 0.3, 0.5), 0.1, 8
+USUAL_SHARES, PULL, MOST_STEPS = (0.3, 0.3, 0.25, 0.25, 0.25), 1.0, 8
 """Variance of each part over that of the axis where touches do not tell, how strongly (in logarithms, as 1 over a
 variance) they are held there, and steps in which the largest evidence is sought.
 """
@@ -32,18 +33,22 @@ class Expected:
 
 
 def parts_of_covariance() -> Floats:
-    """The three parts (3, 64, 64), each of the order of one."""
+    """The five parts (5, 64, 64), each of the order of one."""
     dots = (np.arange(KINDS_OF_CELL)[:, None] >> np.arange(DOTS) & 1).astype(float)
-    shared = load_shares(np.arange(KINDS_OF_CELL))
-    apart = np.abs(dots[:, None] - dots).sum(axis=2)
+    answers = answers_to_dots(np.arange(KINDS_OF_CELL))
+    shared = np.maximum(dots.sum(axis=1), 1.0) ** (-2.0 * LOAD_EXPONENT)
     load = np.outer(shared, shared)
-    return np.array([np.ones_like(load), dots @ dots.T * load, np.exp(-apart / LIKENESS_DOTS) * load])
+    apart = np.abs(dots[:, None] - dots).reshape(*load.shape, 2, -1).sum(axis=3)
+    alike = [np.exp(-one / LIKENESS_DOTS) * load for one in (*np.moveaxis(apart, 2, 0), apart.sum(axis=2))]
+    return np.array([np.ones_like(load), answers @ answers.T, *alike])
 
 
-def load_shares(cells: Ints) -> Floats:
-    """By which the answer to each dot of cells (k,) falls, as dots share the load."""
-    count = (cells[:, None] >> np.arange(DOTS) & 1).sum(axis=1)
-    return np.asarray(np.maximum(count, 1.0) ** -LOAD_EXPONENT)
+def answers_to_dots(cells: Ints) -> Floats:
+    """The answer (k, 6) to each dot of cells (k,), 0 where it is not raised, that falls as dots share the load."""
+    dots = (cells[:, None] >> np.arange(DOTS) & 1).astype(np.float64)
+    of_column = np.repeat(dots.reshape(len(cells), 2, -1).sum(axis=2), DOTS // 2, axis=1)
+    count = np.maximum(dots.sum(axis=1, keepdims=True) * of_column, 1.0)
+    return np.asarray(dots * count**-LOAD_EXPONENT)
 
 
 def expect_cells(parts: Floats, alike: Floats, states: Ints, means: Floats, noise: Floats) -> Expected:

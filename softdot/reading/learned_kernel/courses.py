@@ -40,6 +40,13 @@ def noise_at_rest(courses: Floats) -> float:
     return float(np.sqrt(np.mean(before.var(axis=1))))
 
 
+def compressed(courses: Floats, limit: Floats) -> Floats:
+    """Courses (n, t, c) that grow as their logarithm beyond a limit (c,), by the inverse hyperbolic sine."""
+    finite = np.isfinite(limit)
+    scale = np.where(finite, limit, 1.0)
+    return np.where(finite, scale * np.arcsinh(courses / scale), courses)
+
+
 def shift_courses(courses: Floats, steps: Floats | float) -> Floats:
     """Courses (n, t, c) that come as many steps (n,) earlier, the values at the ends held."""
     count, length, _ = courses.shape

@@ -1,6 +1,6 @@
 """Learning a kernel from labelled touches: where they lie in time and across the line, what each cell is like."""
 
-from dataclasses import replace
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -14,20 +14,23 @@ from softdot.reading.learned_kernel.cell_process import Expected, expect_cells, 
 from softdot.reading.learned_kernel.courses import (
     REST_SHARE,
     STEPS,
+    compressed,
     courses_of,
     noise_at_rest,
     place_range_of,
     shift_courses,
 )
-from softdot.reading.learned_kernel.kernel_file import LearnedKernel
+from softdot.reading.learned_kernel.kernel_file import KernelView, LearnedKernel
 from softdot.reading.learned_kernel.scatter import scatter_of_cells
 from softdot.reading.learned_kernel.scores import along_axes, scores_by_cause, scores_of_touches
 from softdot.reading.learned_kernel.superposition import PLACES, best_lag, superposed_courses
 from softdot.reading.learned_kernel.touches import Touches, clipped_channels
 from softdot.version import installed_version
 
-MOST_AXES, ALIGNMENTS, SHIFTS = 25, 3, np.arange(-4.0, 5.0)
-"""Axes that are kept, rounds of alignment, and shifts in steps of a course that are tried."""
+VIEWS, ALIGNMENTS, SHIFTS = ((40, np.inf), (25, 12.0)), 3, np.arange(-4.0, 5.0)
+"""Axes that are kept in each view, and from what value on, in units of the noise, it compresses; rounds of alignment,
+and shifts in steps of a course that are tried.
+"""
 LEAST_CELLS, LEAST_TOUCHES = 6, 2
 """Different cells, and touches of each, that are needed."""
 LIKENESS_PITCHES, LEAST_COUNT = 0.4, 0.2
@@ -56,11 +59,11 @@ def learn_kernel(touches: Touches, keep_rest: bool, progress: Progress) -> Learn
     heard = _heard_channels(touches, keep_rest)
     courses = courses_of(touches, keep_rest, place_range)[:, :, heard]
     progress.stage("learn")
-    kernel, shifts, shares = _aligned_kernel(courses, cells)
-    lag = kernel.about["lag_steps"]
-    sure = _sureness(*_left_out_scores(courses, shifts, shares, cells, lag, progress), np.unique(cells))
-    return replace(
-        kernel,
+    aligned = [_aligned_view(courses, cells, *of_view) for of_view in VIEWS]
+    views = tuple(view for view, _, _ in aligned)
+    sure = _sureness(*_left_out_scores(courses, aligned, cells, progress), np.unique(cells))
+    return LearnedKernel(
+        views,
         about={
             "softdot_version": installed_version(),
             "channels": touches.taxels.shape[2],
@@ -69,20 +72,20 @@ def learn_kernel(touches: Touches, keep_rest: bool, progress: Progress) -> Learn
             "duration_s": touches.duration_s,
             "place_range_mm": place_range,
             "rest_kept": keep_rest,
-            "noise_at_rest": noise_at_rest(courses * kernel.weight),
+            "noise_at_rest": noise_at_rest(courses * views[0].weight),
             "touches_of_cells": {str(cell): int(np.sum(cells == cell)) for cell in np.unique(cells)},
-            "lag_steps": lag,
-            "share_of_dots": share_of_dots(kernel),
+            "lags_steps": [view.lag_steps for view in views],
+            "share_of_dots": share_of_dots(views[0]),
             **sure,
             "warnings": _warnings(touches, cells, heard),
         },
     )
 
 
-def share_of_dots(kernel: LearnedKernel) -> float:
+def share_of_dots(view: KernelView) -> float:
     """Share of what sets the 64 cells apart, in units of the noise, that is the superposition of courses of dots."""
-    noise = np.linalg.cholesky(kernel.scatter.mean(axis=0))
-    mean, beyond = (one[:, len(PLACES) // 2] for one in (kernel.mean, kernel.mean - kernel.dot_mean))
+    noise = np.linalg.cholesky(view.scatter.mean(axis=0))
+    mean, beyond = (one[:, len(PLACES) // 2] for one in (view.mean, view.mean - view.dot_mean))
     whole, missed = (np.linalg.solve(noise, (one - one.mean(axis=0)).T) for one in (mean, beyond))
     return float(1.0 - (missed**2).sum() / (whole**2).sum())
 
@@ -120,31 +123,37 @@ def _warnings(touches: Touches, cells: Ints, heard: Ints) -> list[str]:
     return found
 
 
-def _aligned_kernel(courses: Floats, cells: Ints) -> tuple[LearnedKernel, Floats, Floats]:
-    """The kernel of touches, the shifts (n,) in steps by which they come late, and the shares (n, p) of the places
+def _aligned_view(
+    courses: Floats, cells: Ints, most_axes: int, limit_in_noise: float
+) -> tuple[KernelView, Floats, Floats]:
+    """One view of touches, the shifts (n,) in steps by which they come late, and the shares (n, p) of the places
     where they may lie, found by turns: first from superposition alone, with all touches in the middle.
     """
+    limit = limit_in_noise / _channel_weights(courses, cells)
+    courses = compressed(courses, limit)
     shares = np.tile((PLACES == 0.0).astype(np.float64), (len(courses), 1))
-    kernel = _kernel_of(courses, cells, shares)
+    view = _view_of(courses, cells, shares, most_axes, limit)
     for number in range(ALIGNMENTS):
-        moved, mean = along_axes(kernel, courses), kernel.mean if number else kernel.dot_mean
+        moved, mean = along_axes(view, courses), view.mean if number else view.dot_mean
         score = np.empty((*moved.shape[:2], len(PLACES)))
         for cell in np.unique(cells):
-            score[cells == cell] = scores_by_cause(kernel, moved[cells == cell], mean, cell)
+            score[cells == cell] = scores_by_cause(view, moved[cells == cell], mean, cell)
         likely = np.exp(score - logsumexp(score, axis=(1, 2), keepdims=True))
-        shifts, shares = likely.sum(axis=2) @ kernel.shift_steps, likely.sum(axis=1)
+        shifts, shares = likely.sum(axis=2) @ view.shift_steps, likely.sum(axis=1)
         shifts -= shifts.mean()
-        kernel = _kernel_of(shift_courses(courses, shifts), cells, shares, kernel.about["lag_steps"])
-    return kernel, shifts, shares
+        view = _view_of(shift_courses(courses, shifts), cells, shares, most_axes, limit, view.lag_steps)
+    return view, shifts, shares
 
 
-def _kernel_of(courses: Floats, cells: Ints, shares: Floats, lag: float | None = None) -> LearnedKernel:
-    """The kernel of aligned touches (n, t, c) with shares (n, p) of places, which says nothing about itself yet."""
+def _view_of(
+    courses: Floats, cells: Ints, shares: Floats, most_axes: int, limit: Floats, lag: float | None = None
+) -> KernelView:
+    """The view of aligned touches (n, t, c), compressed from the limit (c,) on, with shares (n, p) of places."""
     kinds, place = np.unique(cells, return_inverse=True)
     weight, centre = _channel_weights(courses, cells), courses.mean(axis=0)
     flat = ((courses - centre) * weight).reshape(len(courses), -1)
     degrees = len(courses) - len(kinds)
-    axes = np.linalg.svd(flat, full_matrices=False)[2][: min(MOST_AXES, max(1, degrees - 1))].T
+    axes = np.linalg.svd(flat, full_matrices=False)[2][: min(most_axes, max(1, degrees - 1))].T
     of_cells = np.eye(len(kinds))[place]
     counts = of_cells.T @ shares
     means = np.einsum("nk,np,nx->kpx", of_cells, shares, flat, optimize=True) / np.maximum(counts, 1e-9)[..., None]
@@ -155,7 +164,8 @@ def _kernel_of(courses: Floats, cells: Ints, shares: Floats, lag: float | None =
     noise = np.einsum("np,npd->d", shares, (touches[:, None] - means[place]) ** 2) / degrees
     expected = _expected(kinds, counts, means - superposed[kinds], noise)
     mean = superposed + np.stack([one.mean for one in expected], axis=2)
-    return LearnedKernel(
+    return KernelView(
+        limit=limit,
         centre=centre,
         weight=weight,
         axes=axes.reshape(*centre.shape, -1),
@@ -164,7 +174,7 @@ def _kernel_of(courses: Floats, cells: Ints, shares: Floats, lag: float | None =
         variance=np.stack([one.variance for one in expected], axis=2),
         scatter=scatter_of_cells(touches - np.einsum("np,npd->nd", shares, mean[cells]), cells),
         shift_steps=SHIFTS,
-        about={"lag_steps": lag},
+        lag_steps=lag,
     )
 
 
@@ -207,10 +217,12 @@ def _channel_weights(courses: Floats, cells: Ints) -> Floats:
 
 
 def _left_out_scores(
-    courses: Floats, shifts: Floats, shares: Floats, cells: Ints, lag: float, progress: Progress
+    courses: Floats, views: Sequence[tuple[KernelView, Floats, Floats]], cells: Ints, progress: Progress
 ) -> tuple[Any, Any, Any, Any]:
-    """Scores and cells of touches of cells that were left out, then of touches left out while others stayed."""
-    aligned = shift_courses(courses, shifts)
+    """Scores and cells of touches of cells that were left out, then of touches left out while others stayed.
+
+    views : each with the shifts (n,) and shares of places (n, p) of all touches.
+    """
     kinds = np.random.default_rng(0).permutation(np.unique(cells))
     apart = [np.isin(cells, kinds[first : first + CELLS_LEFT_OUT]) for first in range(0, len(kinds), CELLS_LEFT_OUT)]
     turn = np.array([np.sum(cells[:number] == cell) for number, cell in enumerate(cells)])
@@ -218,8 +230,11 @@ def _left_out_scores(
     folds = [*apart, *(turn == part for part in range(FOLDS_OF_TOUCHES))]
     scores = []
     for number, out in enumerate(folds):
-        kernel = _kernel_of(aligned[~out], cells[~out], shares[~out], lag)
-        scores.append(scores_of_touches(kernel, along_axes(kernel, courses[out])))
+        learned = []
+        for (view, shifts, shares), (most_axes, _) in zip(views, VIEWS, strict=True):
+            moved = shift_courses(compressed(courses[~out], view.limit), shifts[~out])
+            learned.append(_view_of(moved, cells[~out], shares[~out], most_axes, view.limit, view.lag_steps))
+        scores.append(scores_of_touches(learned, courses[out]))
         progress.step(number + 1, len(folds), "left out")
     count = len(apart)
     true = [cells[out] for out in folds]

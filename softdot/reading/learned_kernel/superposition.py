@@ -12,8 +12,8 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from foundation.arrays import Floats, Ints
-from softdot.reading.cells import DOTS, KINDS_OF_CELL
-from softdot.reading.learned_kernel.cell_process import load_shares
+from softdot.reading.cells import KINDS_OF_CELL
+from softdot.reading.learned_kernel.cell_process import answers_to_dots
 
 ROWS, NODES_OF_PITCH, REACH = 3, 5, 3
 """Rows of dots; nodes of the field in a pitch between rows, and to either side where touches may lie."""
@@ -56,7 +56,7 @@ def superposed_courses(cells: Ints, counts: Floats, courses: Floats, lag: float)
     return np.asarray(patterns @ weights)
 
 
-@lru_cache(maxsize=1)
+@lru_cache(maxsize=2)
 def _patterns_of_all(length: int, lag: float) -> Floats:
     """Courses of all cells at all places, kept as each learning needs the same ones many times."""
     return _patterns(np.arange(KINDS_OF_CELL), np.arange(len(PLACES)), length, lag)
@@ -69,7 +69,7 @@ def _patterns(cells: Ints, places: Ints, length: int, lag: float) -> Floats:
     along = _root(_matern(nodes))
     across = np.arange(2 * (NODES_OF_PITCH + REACH) + 1) / NODES_OF_PITCH
     beside = _root(np.exp(-0.5 * ((across[:, None] - across) / SMOOTH_PITCHES) ** 2))
-    dots = (cells[:, None] >> np.arange(DOTS) & 1) * load_shares(cells)[:, None]
+    dots = answers_to_dots(cells)
     of_field = 0.0
     for column, late in enumerate((0.0, lag)):
         course = np.array([np.interp(np.arange(length) - late, nodes, one) for one in along.T]).T
