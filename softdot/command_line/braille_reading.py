@@ -51,7 +51,7 @@ def add_read(commands: Any) -> None:
         description="Let an array slide over a line of Braille, or set it down cell by cell: the voltages of all "
         "segments by the kernel that softdot array wrote, and the text that decoders read from them.",
         epilog="docs/reading.md explains the decoders, the results and the study, docs/learned_kernel.md touches of "
-        "single cells by any sensor. " + EXIT_STATUS,
+        "single cells by any sensor. Exit status 3 also where nothing of a recording is stated. " + EXIT_STATUS,
     )
     read.add_argument("text", nargs="?", help="the text, or Unicode Braille cells; may be left out with --recording")
     read.add_argument("config", nargs="?", metavar="CONFIG.toml", help="the design of the kernel, with its [readout]")
