@@ -14,14 +14,17 @@ FOOT = {"cylinder solid layered": np.pi * 0.75**2, "block plane-strain layered":
 INNER = [name for name in INTERFACES if name != "bond-base"]
 
 
-def faces(tet_mesh: TetMesh, *regions: str) -> set:
-    """Faces of some regions as sets of six nodes."""
+def faces(tet_mesh: TetMesh, *regions: str) -> np.ndarray:
+    """Faces (k, 6) of some regions."""
     index = np.concatenate([tet_mesh.region_tets(name) for name in regions])
-    return set(map(frozenset, tet_mesh.tets[index][:, TET_FACES].reshape(-1, 6).tolist()))
+    return tet_mesh.tets[index][:, TET_FACES].reshape(-1, 6)
 
 
-def belong(facets: np.ndarray, to: set) -> bool:
-    return set(map(frozenset, facets.tolist())) <= to
+def belong(facets: np.ndarray, to: np.ndarray) -> bool:
+    """Whether each facet has the nodes of one of the faces, in whatever order."""
+    rows = np.sort(np.concatenate([facets, to]), axis=1)
+    _, kind = np.unique(rows, axis=0, return_inverse=True)
+    return bool(np.isin(kind.ravel()[: len(facets)], kind.ravel()[len(facets) :]).all())
 
 
 def split_all(tet_mesh: TetMesh, names) -> TetMesh:
