@@ -50,11 +50,11 @@ def heard(tab: Tab, frame: str) -> None:
 
 
 def until(holds, timeout_s: float = 20.0) -> None:
-    """Wait until something holds, which is asserted at the end."""
+    """Wait until something holds."""
     end = time.monotonic() + timeout_s
-    while time.monotonic() < end and not holds():
+    while not holds():
+        assert time.monotonic() < end
         time.sleep(0.05)
-    assert holds()
 
 
 def at_full_load(tab: Tab) -> float:
