@@ -97,7 +97,7 @@ def measured(address: str, process: psutil.Process, started: float) -> dict[str,
         page.locator("#press .doing", has_text="as softdot run does").wait_for(timeout=300_000)
         page.evaluate(TOLD)
         print(found, file=sys.stderr)
-        found["coarse press after rest"] = answer_ms(page, THICKNESS, FIRST_PLACE, "curves") / 1e3
+        found["coarse press after rest"] = answer_ms(page, THICKNESS, FIRST_PLACE, "view") / 1e3
         page.locator("#press .doing", has_text="as softdot run does").wait_for(timeout=300_000)
         found |= estimates(page)
         print(found, file=sys.stderr)
