@@ -317,15 +317,20 @@ def test_undo_while_it_presses_leads_back_to_a_press():
     assert "mistake" not in state.told()["said"]
 
 
+def pressed(state, thickness):
+    """Write, check and press."""
+    state.document.write(text_of(thickness, "a", 1))
+    state.edited()
+    state.checked(state.text, true_check(state.text))
+    job = state.press_begins()
+    state.pressed(job, true_press(state.text, "accurate"), complete=True)
+    state.press_ends(job)
+
+
 def test_an_accurate_press_is_there_at_once_where_its_design_comes_back():
     state = DesignState(text_of(0.47, "a", 1))
     for thickness in (0.47, 0.52):
-        state.document.write(text_of(thickness, "a", 1))
-        state.edited()
-        state.checked(state.text, true_check(state.text))
-        job = state.press_begins()
-        state.pressed(job, true_press(state.text, "accurate"), complete=True)
-        state.press_ends(job)
+        pressed(state, thickness)
     state.document.undo()
     state.edited()
     assert (state.phase, state.wants_press) == ("accurate", False)
@@ -342,16 +347,6 @@ def test_a_kept_design_has_the_numbers_of_its_own_press():
     state.pressed(job, true_press(job.text, "coarse"), complete=False)
     kept.renew(state)
     assert kept.message()[1]()["designs"][0]["numbers"]["voltage"] == 10 * 0.47
-
-
-def pressed(state, thickness):
-    """Write, check and press."""
-    state.document.write(text_of(thickness, "a", 1))
-    state.edited()
-    state.checked(state.text, true_check(state.text))
-    job = state.press_begins()
-    state.pressed(job, true_press(state.text, "accurate"), complete=True)
-    state.press_ends(job)
 
 
 def test_curves_are_told_again_where_only_their_order_has_changed():
