@@ -14,6 +14,8 @@ from softdot.studio.processes import InTurn, MachineError, Pool, TaskRefused
 
 PAUSE_S, REST_S = 0.15, 0.2
 """A hand that has changed nothing for so long pauses, and the design is checked; then it rests, and it is pressed."""
+LONGEST_LEARNT_S = 0.3
+"""For a derivative that is under way where the next press begins, which wants the cores."""
 MOST_MOVED = 8
 LOADING = {
     "parts": "the process that draws is being loaded on this machine",
@@ -208,9 +210,8 @@ class Follower:
 
         with suppress(TaskRefused, MachineError):  # where nothing can be estimated, a press tells
             need = self._state.need_GB
-            await self._studio.solve.run(
-                "press", "slopes:exponents", origin.text, self.moved, need_GB=need, tell=on_way
-            )
+            asked = "press", "slopes:exponents", origin.text, self.moved
+            await self._studio.solve.run(*asked, need_GB=need, tell=on_way, longest_stop_s=LONGEST_LEARNT_S)
 
     async def _press_in_stages(self, job: Origin) -> None:
         state = self._state

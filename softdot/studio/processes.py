@@ -30,6 +30,10 @@ LONGEST_LOAD_S = 240.0
 """For a process to load its libraries, on a machine with much else to do; 3 s on one that is idle."""
 LONGEST_STOP_S = 2.0
 """For a task that is asked to stop; after it its process is ended."""
+SPARE_AFTER_S = 5.0
+"""After which a process takes the place of one that is at work: loading takes a core for seconds, which a coarse press
+needs, and most tasks give their process back before.
+"""
 LOADING = {"progress": {"stage": "loading", "done": 0, "count": 0, "left_s": None}}
 
 
@@ -82,13 +86,13 @@ class Worker(WorkerProcess):
         finally:
             is_over.set()
 
-    async def stops(self) -> bool:
-        """Whether the task stops soon when it is asked to, so that the process can be used again."""
+    async def stops(self, within_s: float) -> bool:
+        """Whether the task stops in time when it is asked to, so that the process can be used again."""
         if self._task is None or self._task.done():
             return self.is_alive
         if not self.interrupt():
             return False
-        await asyncio.wait([self._task], timeout=LONGEST_STOP_S)
+        await asyncio.wait([self._task], timeout=within_s)
         return self._task.done() and self.is_alive
 
 
@@ -157,6 +161,7 @@ class Pool:
         self._idle: list[Worker] = []
         self._busy: list[Worker] = []
         self._stopping: set[asyncio.Task[None]] = set()
+        self._spare: asyncio.TimerHandle | None = None
 
     def prepare(self) -> None:
         """Start a process that waits for a task, where there is none."""
@@ -165,18 +170,24 @@ class Pool:
             self._idle.append(Worker(self._warm_up))
 
     async def run(
-        self, room: str, task: str, *arguments: Any, need_GB: float = 0.0, tell: Tell = lambda _: None
+        self,
+        room: str,
+        task: str,
+        *arguments: Any,
+        need_GB: float = 0.0,
+        tell: Tell = lambda _: None,
+        longest_stop_s: float = LONGEST_STOP_S,
     ) -> Any:
         """As Worker.run, in the warmest process that is free, once there is room; begun again once where its process
-        dies. TaskRefused, MachineError.
+        dies. longest_stop_s : for its next step where it is cancelled. TaskRefused, MachineError.
         """
         async with self._rooms[room].place(need_GB, tell):
             for _ in range(2):
                 with suppress(ProcessDiedError, TimeoutError):
-                    return await self._run(task, *arguments, tell=tell)
+                    return await self._run(task, arguments, tell, longest_stop_s)
         raise MachineError("its process was ended twice by this machine, whose memory may be short; it was not done")
 
-    async def _run(self, task: str, *arguments: Any, tell: Tell) -> Any:
+    async def _run(self, task: str, arguments: Sequence[Any], tell: Tell, longest_stop_s: float) -> Any:
         self.prepare()
         worker = next((one for one in self._idle if one.is_warm), self._idle[0])
         self._idle.remove(worker)
@@ -185,10 +196,10 @@ class Pool:
             if not worker.is_warm:
                 tell(LOADING)
                 await worker.until_warm()
-            self.prepare()  # the next one loads once this one has, so that the first press has the cores
+            self._prepare_later()
             found = await worker.run(task, *arguments, tell=tell)
         except asyncio.CancelledError:
-            stopping = asyncio.create_task(self._stop(worker))
+            stopping = asyncio.create_task(self._stop(worker, longest_stop_s))
             self._stopping.add(stopping)
             stopping.add_done_callback(self._stopping.discard)
             raise
@@ -200,8 +211,13 @@ class Pool:
         self._put_back(worker)
         return found
 
-    async def _stop(self, worker: Worker) -> None:
-        if not await worker.stops():
+    def _prepare_later(self) -> None:
+        if self._spare is not None:
+            self._spare.cancel()
+        self._spare = asyncio.get_running_loop().call_later(SPARE_AFTER_S, self.prepare)
+
+    async def _stop(self, worker: Worker, longest_s: float) -> None:
+        if not await worker.stops(longest_s):
             worker.end()
         self._put_back(worker)
 
@@ -218,6 +234,8 @@ class Pool:
 
     def end(self) -> None:
         """All of them."""
+        if self._spare is not None:
+            self._spare.cancel()
         for worker in [*self._idle, *self._busy]:
             worker.end()
 

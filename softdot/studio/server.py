@@ -6,12 +6,14 @@ import signal
 import socket
 from collections.abc import Callable
 from contextlib import suppress
+from importlib import import_module
 
 from tornado.ioloop import PeriodicCallback
 from tornado.netutil import bind_sockets
 
 from foundation.errors import InputError
 from foundation.scratch_folders import scratch_folder
+from foundation.worker_process import ProcessDiedError
 from softdot.studio.admission import Admission, cores
 from softdot.studio.autosave import Autosave, folder
 from softdot.studio.connections import LONGEST_BODY_S, LONGEST_HEAD_S, BoundedServer
@@ -58,12 +60,21 @@ async def serve(host: str, port: int, start: str, ready: Callable[[str], None], 
                 _stop_by_signals(stop)
                 name = f"127.0.0.1:{own}" if len(guard.hosts) > 1 else next(iter(guard.hosts))
                 ready(f"http://{name}/?key={guard.key}")
+                editing = asyncio.create_task(_load_for_edits(check))
                 await stop.wait()
+                editing.cancel()
             finally:
                 tabs.close()
         finally:
             for processes in (draw, check, solve):
                 processes.end()
+
+
+async def _load_for_edits(check: InTurn) -> None:
+    """Once the process that checks has loaded, and left the cores to the first page: else the first edit waits 1.6 s."""
+    with suppress(ProcessDiedError, TimeoutError):
+        await check.prepare().until_warm()
+    await asyncio.to_thread(import_module, "softdot.config.idle")
 
 
 def bound_sockets(host: str, port: int, last: int) -> list[socket.socket]:

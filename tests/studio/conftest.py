@@ -92,11 +92,13 @@ def studio(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
 
 
 class Tab:
-    """A tab of the page. wrong : what its console complained of."""
+    """A tab of the page. wrong : what its console complained of. lacking : files that do not come, until unroute."""
 
-    def __init__(self, context: Any, address: str) -> None:
+    def __init__(self, context: Any, address: str, lacking: str | None = None) -> None:
         self.wrong: list[str] = []
         self.page = context.new_page()
+        if lacking:
+            self.page.route(lacking, lambda route: route.abort())
         self.page.on("pageerror", lambda error: self.wrong.append(str(error)))
         self.page.on("console", self._hear)
         self.page.goto(address)
@@ -106,7 +108,7 @@ class Tab:
 
     def _hear(self, said: Any) -> None:
         """An error; that a studio which has ended does not answer is none."""
-        if said.type == "error" and not re.search("WebSocket connection|ERR_CONNECTION_REFUSED", said.text):
+        if said.type == "error" and not re.search("WebSocket connection|ERR_CONNECTION_|ERR_EMPTY_RESPONSE", said.text):
             self.wrong.append(said.text)
 
     def pressed(self, timeout_s: float = 60.0) -> None:
@@ -143,8 +145,8 @@ def open_tab(browser: Any) -> Iterator[Callable[..., Tab]]:
     context = browser.new_context(viewport={"width": 1366, "height": 768}, accept_downloads=True)
     tabs: list[Tab] = []
 
-    def open_one(address: str) -> Tab:
-        tabs.append(Tab(context, address))
+    def open_one(address: str, lacking: str | None = None) -> Tab:
+        tabs.append(Tab(context, address, lacking))
         return tabs[-1]
 
     yield open_one

@@ -143,6 +143,19 @@ def test_a_folder_that_cannot_be_written_is_told(tmp_path, open_tab):
     assert running.end() == 0
 
 
+def test_a_view_that_did_not_come_is_told_and_there_as_soon_as_the_program_is_again(tmp_path, open_tab):
+    first = Running(tmp_path, QUICK)
+    tab = open_tab(first.address, lacking="**/view.js")
+    tab.says("#said", "The 3D view could not be loaded")
+    tab.page.unroute("**/view.js")
+    first.end(signal.SIGKILL)
+    tab.says("#link", "does not answer")
+    again = Running(tmp_path, QUICK)
+    tab.says("#view3d .shown", "accurate press", 60.0)
+    tab.wrong.clear()  # what was aborted here
+    assert again.end() == 0
+
+
 def test_a_refused_recording_takes_that_before_with_it(studio, open_tab, tmp_path):
     tab = open_tab(studio.address)
     drop_paths(tab, labelled(tmp_path / "rig", "the first"))

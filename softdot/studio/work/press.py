@@ -20,7 +20,7 @@ from softdot.studio.estimate import QUANTITIES
 from softdot.studio.work.design import case_of, config_of, pressed_part
 from softdot.studio.work.remedies import late_remedies
 from softdot.summary import mesh_part, press_part
-from softdot.tolerances.responses import with_larger_elements
+from softdot.tolerances.responses import coarser_press, path_matters, with_larger_elements
 from softdot.tolerances.tolerances import PERMITTIVITY_ROW
 from solve.result import PressResult, Step
 
@@ -29,9 +29,12 @@ COARSE = 3.0
 
 
 def coarse_press(text: str, tell: Tell) -> dict[str, Any]:
-    """The press on large elements, extruded where the shape allows it: meshed in no time, some percent off."""
-    case = pressed_part(case_of(text))
-    larger = with_larger_elements(case.config, COARSE)
+    """The press on large elements, extruded where the shape allows it: meshed in no time, some percent off.
+
+    In few load steps where the path does not matter, so that full load is the same.
+    """
+    config = pressed_part(case_of(text)).config
+    larger = (with_larger_elements if path_matters(config) else coarser_press)(config, COARSE)
     try:
         layered = Case(larger.model_copy(update={"mesh": larger.mesh.model_copy(update={"mesher": "layered"})}))
         return _pressed(layered, TaskProgress(tell), "coarse")
@@ -181,6 +184,6 @@ def circuit(text: str, history: bytes) -> dict[str, Any] | None:
 
 
 def warm_up() -> None:
-    """A press of a few elements, which loads the compiled kernels and the solver."""
+    """A press of a few elements with all that the page is told of one, which loads kernels, solver and libraries."""
     tiny = {"mesher": "layered", "element_size_mm": 1.0, "contact_element_size_mm": 0.5}
-    Case(mesh=tiny, press={"load_steps": 1}).solve()
+    _pressed(Case(mesh=tiny, press={"load_steps": 1}), TaskProgress(lambda _: None), "coarse")

@@ -28,6 +28,7 @@ const tab = {
   painted: {},
   tries: 0,
   viewer: null,
+  lacksView: false,
 };
 const store = new Store(sessionStorage);
 const aloud = (text) => {
@@ -112,8 +113,13 @@ function paintForm({ design }) {
 
 // After the form, and where nobody leaves the start page at once: a driver may take a second to begin.
 async function beginView() {
-  const { View } = await import("./view.js");
-  tab.viewer = new View(find("#view3d"));
+  const module = await import("./view.js").catch(() => null);
+  if (!module) {
+    tab.lacksView = true;
+    say("The 3D view could not be loaded. Reload the page.", true);
+    return;
+  }
+  tab.viewer = new module.View(find("#view3d"));
   paint();
 }
 
@@ -330,6 +336,7 @@ async function connect() {
   }
   socket.binaryType = "arraybuffer";
   socket.addEventListener("open", () => {
+    if (tab.lacksView) location.reload(); // a browser may remember that a script did not come
     Object.assign(tab, { tries: 0, hasOpened: true });
     sessionStorage.setItem("open", "yes");
     store.opened((text) => socket.send(text));
