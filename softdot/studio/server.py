@@ -71,7 +71,7 @@ async def serve(host: str, port: int, start: str, ready: Callable[[str], None], 
 
 
 async def _load_for_edits(check: InTurn) -> None:
-    """Once the process that checks has loaded, and left the cores to the first page: else the first edit waits 1.6 s."""
+    """After the first page has had the cores: else the first edit waits for it, 1.6 s."""
     with suppress(ProcessDiedError, TimeoutError):
         await check.prepare().until_warm()
     await asyncio.to_thread(import_module, "softdot.config.idle")
