@@ -103,8 +103,8 @@ def compare(family: Family, places: Floats, pressed: dict[str, Floats]) -> None:
         for words, with_slopes in (("quadratic, derivatives", True), ("quadratic, none       ", False)):
             print(f"{name}: {words}       {percent(quadratic(quantity, with_slopes)(places), last)}")
         print(f"{name}: polynomial chaos, none       {percent(polynomial_chaos(quantity)(places), last)}")
-        shares = 100.0 * within[:, 1:].mean(), 100.0 * within[:, -1].mean()
-        print(f"{name}: within the 95 % interval {shares[0]:.0f} % of all steps, {shares[1]:.0f} % at full load")
+        shares = 100.0 * within.all(axis=1).mean(), 100.0 * within[:, -1].mean()
+        print(f"{name}: within the 95 % interval {shares[0]:.0f} % of whole courses, {shares[1]:.0f} % at full load")
 
 
 def measure_time(family: Family) -> None:

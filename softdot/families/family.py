@@ -26,8 +26,8 @@ class FamilyCourse:
     """Courses over the load steps, index 0 unloaded, of one design (s,), or of an array of designs (..., s).
 
     courses : quantity -> values, with the unit in its name, each an attribute too (course.reaction_force_N). interval :
-    quantity -> low and high end, within which a press of a design drawn from the family lies with a probability of
-    95 %. slopes : key -> quantity -> derivative by the key, in the units of both.
+    quantity -> low and high end, within which the whole course of a design drawn from the family lies with a
+    probability of 95 %. slopes : key -> quantity -> derivative by the key, in the units of both.
     """
 
     courses: Mapping[str, Floats]

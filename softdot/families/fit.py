@@ -67,19 +67,20 @@ def _with_guess(quantity: FamilyQuantity, place: Floats) -> FamilyQuantity:
 
 
 def held_out_row(quantities: Mapping[str, FamilyQuantity], place: Floats, record: Record) -> dict[str, Any]:
-    """Errors in percent of the last step of a press at a place (d,) that took no part, and whether it is within the
-    intervals.
+    """Errors in percent of the last step of a press at a place (d,) that took no part, and whether its whole course is
+    within the intervals.
     """
     row: dict[str, Any] = {}
     for name, quantity in quantities.items():
         if name in JUDGED:
             pressed = float(record["courses"][name][-1])
             course = quantity.course(np.asarray(place)[None])
-            low, value, high = (float(part[0, -1]) for part in (course.low, course.value, course.high))
+            value = float(course.value[0, -1])
+            is_within = (course.low[0] <= record["courses"][name]) & (record["courses"][name] <= course.high[0])
             row[name] = {
                 "pressed": pressed,
                 "family": value,
                 "error_percent": 100.0 * abs(value - pressed) / abs(pressed) if pressed else 0.0,
-                "within": low <= pressed <= high,
+                "within": bool(is_within.all()),
             }
     return row

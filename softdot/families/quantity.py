@@ -10,7 +10,7 @@ from foundation.arrays import Floats
 from softdot.families.gradient_process import GradientProcess, Scales
 
 LEVEL = 0.95
-"""Share of designs whose press is to be within the interval."""
+"""Share of designs whose whole course is to be within the interval."""
 LARGEST_LOG_RATIO = 1e3
 """Largest over least value of a step whose logarithm is taken."""
 LEAST_SHARE = 0.5
@@ -74,8 +74,8 @@ class Forms:
 class FamilyQuantity:
     """A quantity from its values (n, s) and slopes (n, d, s), None without, at places (n, d).
 
-    factor : of the deviation that the process states, so that the interval holds for presses left out. scales, start :
-    as of GradientProcess.
+    scores (n,) : of each press left out, its largest error over the deviation of any step. factor : of the deviation,
+    so that the interval holds for whole courses left out. scales, start : as of GradientProcess.
     """
 
     def __init__(
@@ -90,7 +90,7 @@ class FamilyQuantity:
         self.forms = Forms.of(values)
         self._moving = np.flatnonzero(self.forms.moving)
         self.process: GradientProcess | None = None
-        self.scores, self.floor = np.zeros((0, 0)), np.zeros(0)
+        self.scores, self.floor = np.zeros(0), np.zeros(0)
         if len(self._moving):
             modelled = self.forms.modelled(values)[:, self._moving]
             sloped = None
@@ -99,8 +99,7 @@ class FamilyQuantity:
             self.process = GradientProcess(places, modelled, sloped, scales, start)
             left = self.process.left_out()
             self.floor = LEAST_SHARE * np.median(left.deviation, axis=0)
-            self.left_out_errors = left.error
-            self.scores = np.abs(left.error) / np.maximum(left.deviation + self.floor, 1e-12)
+            self.scores = (np.abs(left.error) / np.maximum(left.deviation + self.floor, 1e-12)).max(axis=1)
         self.factor = conformal_factor(self.scores)
 
     def course(self, places: Floats) -> QuantityCourse:
@@ -141,12 +140,14 @@ class FamilyQuantity:
 
 
 def conformal_factor(scores: Floats, level: float = LEVEL) -> float:
-    """Factor by which the scores (n, s) of n presses left out stay below 1 for a share of presses to come.
+    """What the score of a further press stays below with a probability of level, from the scores (n,) of n.
 
     The quantile of a sample of n that a further one exceeds with the asked probability (Vovk, Gammerman and Shafer,
-    Algorithmic learning in a random world, 2005), the largest where the sample is too small for it.
+    Algorithmic learning in a random world, 2005), the largest where the sample is too small for it. With the largest
+    score of a course it holds for the course as a whole (Diquigiovanni, Fontana and Vantini, J. Multivar. Anal. 189,
+    2022, 104879).
 
-    >>> conformal_factor(np.arange(1.0, 40.0)[:, None])
+    >>> conformal_factor(np.arange(1.0, 40.0))
     38.0
     """
     if not scores.size:
