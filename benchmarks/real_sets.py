@@ -1,27 +1,24 @@
-"""A scoreboard of real recordings: python -m benchmarks.real_sets JSON FOLDER [SET…].
+"""A scoreboard of real recordings: python -m benchmarks.real_sets JSON FOLDER [SET…] [--stability].
 
 FOLDER holds the published sets as they are handed out: raw files for the converters of examples/recordings, and ready
 recordings. What an expert would accept of each is written down here, before it is run. Beside it stand controls in
-which no physics is left to find. Rows that the file has are not diagnosed again.
+which no physics is left to find; with --stability also the changes of benchmarks.verdicts, which leave the physics
+alone. Rows that the file has are not diagnosed again.
 """
 
 import sys
 import tempfile
-import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from benchmarks.timing import Table, file_argument
-from benchmarks.verdicts import row_of, silent
-from diagnose.inference.diagnose import diagnose
-from diagnose.signals.reading import thin_recording
+from benchmarks.verdicts import AS_IT_IS, VARIANTS, diagnosed
 from diagnose.signals.recording import Recording
 from examples.recordings.controls import reversed_answers, shuffled
-from softdot.config.rig import RIG_FILE, load_rig
-from softdot.diagnosis.engine import engine_for
+from softdot.config.rig import RIG_FILE
 
 CONVERTERS = {
     "adhesive-shear": "adhesive_shear",
@@ -58,7 +55,6 @@ ACCEPTED = {
     "hysteresis-loop": Accepted(("hysteresis",), known=False, never=("viscoelasticity", "charge-leakage", "low-pass")),
 }
 CONTROLS: dict[str, Callable[[Recording], Recording]] = {
-    "as it is": lambda recording: recording,
     "shuffled": shuffled,
     "reversed": reversed_answers,
 }
@@ -75,7 +71,7 @@ def recordings(source: Path, work: Path) -> Iterator[Path]:
 def judged(accepted: Accepted, control: str, row: dict[str, Any]) -> str:
     """Whether a verdict is right, wrong or none: "right", "kind", "none" or "wrong"."""
     named, whole = row["named"], row["grade"] == "identified"
-    if control != "as it is":
+    if control in CONTROLS:
         return "wrong" if named else "right"
     if any(name in named for name in accepted.never) or (whole and not accepted.known):
         return "wrong"
@@ -84,26 +80,24 @@ def judged(accepted: Accepted, control: str, row: dict[str, Any]) -> str:
     return "kind" if row["grade"] == "kind only" else "none"
 
 
-def main(path: Path, folder: Path, names: list[str]) -> None:
+def main(path: Path, folder: Path, names: list[str], is_stability_asked: bool) -> None:
     """Diagnose what the file has not."""
+    changes = {AS_IT_IS: VARIANTS[AS_IT_IS], **CONTROLS, **(VARIANTS if is_stability_asked else {})}
     table = Table(path, "real sets")
     with tempfile.TemporaryDirectory() as work:
         for name, accepted in ACCEPTED.items():
             if names and name not in names:
                 continue
             for place in recordings(folder / name, Path(work)):
-                for control, change in CONTROLS.items():
+                for control, change in changes.items():
                     if table.has(recording=place.name, control=control):
                         continue
-                    rig = load_rig(place)
-                    rig = replace(rig, recording=change(thin_recording(rig.recording)))
-                    start = time.perf_counter()
-                    findings = diagnose(rig.recording, engine_for(rig, silent), rig.bench.seed, silent)
-                    row = row_of(findings, time.perf_counter() - start)
-                    table.add(
-                        {"recording": place.name, "control": control, "is": judged(accepted, control, row), **row}
-                    )
+                    row = diagnosed(place, change)
+                    if row is not None:
+                        told = {"recording": place.name, "control": control, "is": judged(accepted, control, row)}
+                        table.add({**told, **row})
 
 
 if __name__ == "__main__":
-    main(file_argument(), Path(sys.argv[2]), sys.argv[3:])
+    sets = [word for word in sys.argv[3:] if not word.startswith("--")]
+    main(file_argument(), Path(sys.argv[2]), sets, "--stability" in sys.argv)

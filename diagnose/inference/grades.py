@@ -49,6 +49,14 @@ def takes_away(before: float, after: float) -> bool:
     return before**2 - after**2 >= max(THRESHOLDS.closer * before**2, THRESHOLDS.visible**2)
 
 
+def accounts_for_all(error: float, share: float) -> bool:
+    """Whether an explanation leaves no more than flaws of a rig, or little of what was there. error : over the signal;
+    share : of the excess that it takes away.
+    """
+    small = error <= THRESHOLDS.visible and share >= THRESHOLDS.confirmed
+    return small or (share >= THRESHOLDS.nearly_all and error <= THRESHOLDS.left)
+
+
 @dataclass(frozen=True)
 class Evidence:
     """Evidence on a recording. p_mismatch : family-wise p-value of the residual of the baseline. best : its name, ""
@@ -179,9 +187,7 @@ def one_loading_shows_no_memory(e: Evidence) -> Verdict | None:
 
 def identified(e: Evidence) -> Verdict | None:
     """Few explanations are left, which account for all but flaws of a rig, and nothing flexible does better."""
-    small = e.error <= THRESHOLDS.visible and e.share >= THRESHOLDS.confirmed
-    whole = small or (e.share >= THRESHOLDS.nearly_all and e.error <= THRESHOLDS.left)
-    few = e.group <= THRESHOLDS.largest_group
+    whole, few = accounts_for_all(e.error, e.share), e.group <= THRESHOLDS.largest_group
     return Identified(_praise(e)) if whole and few and e.holds and not e.beaten and not e.implausible else None
 
 

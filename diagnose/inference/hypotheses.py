@@ -22,7 +22,7 @@ from diagnose.fit.rig_discrepancy import VISIBLE_ERROR, RigDiscrepancy, played
 from diagnose.fit.samples import SampleBlock, Samples
 from diagnose.forward import Candidate, NoAnswerError
 from diagnose.inference.conditions import conditions_of
-from diagnose.inference.grades import THRESHOLDS, takes_away
+from diagnose.inference.grades import THRESHOLDS, accounts_for_all, takes_away
 from diagnose.inference.held_out_scores import USUAL_SHAPE, HeldOutScorer, LinearHypothesis, Scored
 from diagnose.inference.screening import Screening
 from diagnose.inference.search import first_fits, paired, pairs, singles
@@ -214,7 +214,7 @@ def compared(judge: Judge, rng: np.random.Generator, report: Report) -> Compared
     scores = [one.scored.log_scores for one in (*ordered, judge.nothing, judge.something_else)]
     probabilities = held_out_probabilities(np.array(scores), rng)
     if ordered:
-        first = _simplest(judge, ordered, probabilities)
+        first = simplest(judge, ordered, probabilities)
         order = [first, *(n for n in range(len(scores)) if n != first)]
         ordered, probabilities = [ordered[n] for n in order[: len(ordered)]], probabilities[order]
     return Compared(judge, tuple(ordered), judge.nothing, judge.something_else, probabilities)
@@ -237,10 +237,18 @@ def _in_order(judge: Judge, found: Sequence[Hypothesis]) -> list[Hypothesis]:
     return sorted(found, key=rank)
 
 
-def _simplest(judge: Judge, ordered: Sequence[Hypothesis], probabilities: Floats) -> int:
-    """Number of the first, or of what holds a part of its mechanisms only and is not excluded beside it."""
+def simplest(judge: Judge, ordered: Sequence[Hypothesis], probabilities: Floats) -> int:
+    """Number of the first, or of what holds a part of its mechanisms only and is not excluded beside it. Where a part
+    is probable and accounts for all but flaws, the others are details of its law.
+    """
     names = [{candidate.name for candidate in one.candidates} for one in ordered]
-    parts = [n for n in range(len(ordered)) if names[n] < names[0] and as_good(judge, ordered, probabilities, n)]
+
+    def is_enough(number: int) -> bool:
+        one = ordered[number]
+        whole = accounts_for_all(judge.error(one), judge.known_share(one))
+        return as_good(judge, ordered, probabilities, number) or (whole and is_probable(ordered, probabilities, number))
+
+    parts = [n for n in range(len(ordered)) if names[n] < names[0] and is_enough(n)]
     return min(parts, key=lambda n: len(names[n]), default=0)
 
 
@@ -249,9 +257,14 @@ def as_good(judge: Judge, ordered: Sequence[Hypothesis], probabilities: Floats, 
     closer in practice, or its forecast differs from that of the first by no more than those of two good codes.
     """
     first, other = ordered[0], ordered[number]
-    least = THRESHOLDS.rival * float(probabilities[: len(ordered)].max() + probabilities[number])
-    probable = float(probabilities[number]) > least and not judge.is_closer(first, other)
+    probable = is_probable(ordered, probabilities, number) and not judge.is_closer(first, other)
     return probable or judge.apart(first, other) < USUAL_SHAPE
+
+
+def is_probable(ordered: Sequence[Hypothesis], probabilities: Floats, number: int) -> bool:
+    """Whether an explanation is probable beside the likeliest one."""
+    least = THRESHOLDS.rival * float(probabilities[: len(ordered)].max() + probabilities[number])
+    return float(probabilities[number]) > least
 
 
 def implausible(fit: Fitted | None) -> tuple[str, ...]:
