@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from diagnose.fit.refit import Fitted
 from diagnose.fit.rig_discrepancy import VISIBLE_ERROR
 from diagnose.forward import Setting, Signals
 from diagnose.inference.equal_explanations import explanations_as_good
-from diagnose.inference.grades import Evidence, Identified, KindOnly, MainPart, Unexplained, judged
+from diagnose.inference.grades import Evidence, Identified, KindOnly, MainPart, Unexplained, Verdict, judged
 from diagnose.inference.hypotheses import Compared, Hypothesis, implausible
 from diagnose.inference.localisation import explanations, places, shares
 from diagnose.inference.reasons import named, warnings_of
@@ -57,16 +58,44 @@ def baseline_findings(
     )
 
 
-def findings_of(found: Compared, detected: Checked, report: Report) -> Findings:
-    """All findings where there is a mismatch."""
-    judge, best = found.judge, found.best
-    model, screening = judge.model, judge.found
-    report("held-out presses", 0, 1)
+class Judgement(NamedTuple):
+    """A verdict on hypotheses with what it rests on. train, held_out : the best, fitted to half of the presses."""
+
+    found: Compared
+    train: Fit
+    held_out: Fit | None
+    group: list[int]
+    evidence: Evidence
+    verdict: Verdict
+
+
+def judgement(found: Compared, detected: Checked) -> Judgement:
+    """The verdict on the best explanation."""
+    best = found.best
     gains = best.scored.log_scores - found.nothing.scored.log_scores if best is not None else np.zeros(0)
-    train, held_out = trained_and_held(screening, best or found.nothing, gains)
+    train, held_out = trained_and_held(found.judge.found, best or found.nothing, gains)
     group = explanations_as_good(found)
     evidence = evidence_of(found, detected, group, held_out)
-    verdict = judged(evidence)
+    return Judgement(found, train, held_out, group, evidence, judged(evidence))
+
+
+def judgement_of_best_part(found: Compared, detected: Checked) -> Judgement:
+    """The verdict on the best explanation; where several mechanisms together may not be named, that on the first part
+    of them that is the main part.
+    """
+    whole = judgement(found, detected)
+    if isinstance(whole.verdict, Unexplained):
+        parts = (judgement(found.with_first(number), detected) for number in found.parts_of_best)
+        return next((one for one in parts if isinstance(one.verdict, MainPart)), whole)
+    return whole
+
+
+def findings_of(compared: Compared, detected: Checked, report: Report) -> Findings:
+    """All findings where there is a mismatch."""
+    report("held-out presses", 0, 1)
+    found, train, held_out, group, evidence, verdict = judgement_of_best_part(compared, detected)
+    judge, best = found.judge, found.best
+    model, screening = judge.model, judge.found
     named_all, told = isinstance(verdict, Identified), isinstance(verdict, Identified | MainPart)
     fits = [one.fit for one in found.explained if one.fit is not None]
     left = {one.component for n in group for one in found.explained[n].candidates} if told else None

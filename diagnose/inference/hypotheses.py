@@ -85,6 +85,18 @@ class Compared:
         """The first of those with mechanisms."""
         return self.explained[0] if self.explained else None
 
+    @property
+    def parts_of_best(self) -> list[int]:
+        """Numbers of the explanations that hold some of the mechanisms of the best only, best first."""
+        names = [{candidate.name for candidate in one.candidates} for one in self.explained]
+        return [n for n, own in enumerate(names) if own < names[0]]
+
+    def with_first(self, number: int) -> "Compared":
+        """The same with another explanation before all others."""
+        order = [number, *(n for n in range(len(self.probabilities)) if n != number)]
+        explained = tuple(self.explained[n] for n in order[: len(self.explained)])
+        return replace(self, explained=explained, probabilities=self.probabilities[order])
+
 
 class Judge:
     """Scores hypotheses of one recording, all with the same discrepancy and on the same conditions."""
@@ -213,11 +225,8 @@ def compared(judge: Judge, rng: np.random.Generator, report: Report) -> Compared
     ordered = _in_order(judge, found)
     scores = [one.scored.log_scores for one in (*ordered, judge.nothing, judge.something_else)]
     probabilities = held_out_probabilities(np.array(scores), rng)
-    if ordered:
-        first = simplest(judge, ordered, probabilities)
-        order = [first, *(n for n in range(len(scores)) if n != first)]
-        ordered, probabilities = [ordered[n] for n in order[: len(ordered)]], probabilities[order]
-    return Compared(judge, tuple(ordered), judge.nothing, judge.something_else, probabilities)
+    whole = Compared(judge, tuple(ordered), judge.nothing, judge.something_else, probabilities)
+    return whole.with_first(simplest(judge, ordered, probabilities)) if ordered else whole
 
 
 def _in_order(judge: Judge, found: Sequence[Hypothesis]) -> list[Hypothesis]:
