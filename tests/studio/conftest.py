@@ -108,7 +108,7 @@ class Tab:
 
     def _hear(self, said: Any) -> None:
         """An error; that a studio which has ended does not answer is none."""
-        if said.type == "error" and not re.search("WebSocket connection|ERR_CONNECTION_|ERR_EMPTY_RESPONSE", said.text):
+        if said.type == "error" and not re.search("WebSocket connection|ERR_CONNECTION_REFUSED", said.text):
             self.wrong.append(said.text)
 
     def pressed(self, timeout_s: float = 60.0) -> None:

@@ -139,6 +139,7 @@ def test_a_folder_that_cannot_be_written_is_told(tmp_path, open_tab):
     running = Running(tmp_path, QUICK)
     tab = open_tab(running.address)
     tab.says("#link", "This design is not saved")
+    tab.says("#view3d .shown", "The", 60.0)  # the page has all its files before the program ends
     assert "every change is saved" not in tab.head
     assert running.end() == 0
 
