@@ -141,6 +141,9 @@ class Engine(Protocol):
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
         """Do the full solves that these candidates need, or recall them. Repeated calls cost nothing."""
 
+    def prepare_roughly(self, candidates: Sequence[Candidate], report: Report) -> None:
+        """Do few and coarse solves: predictions with these candidates tell which of them are worth all solves."""
+
     def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:
         """Do a full solve with each of these settings alone, so that predictions near them are as right as there.
 
@@ -170,6 +173,9 @@ class SolvedOutright:
     solves_outright = True
 
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
+        """Do nothing."""
+
+    def prepare_roughly(self, candidates: Sequence[Candidate], report: Report) -> None:
         """Do nothing."""
 
     def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:

@@ -42,6 +42,10 @@ class DelegatingEngine:
         """Prepare the other engine for these candidates."""
         self._engine.prepare(candidates, report)
 
+    def prepare_roughly(self, candidates: Sequence[Candidate], report: Report) -> None:
+        """Prepare the other engine roughly for these candidates."""
+        self._engine.prepare_roughly(candidates, report)
+
     def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:
         """Refine the other engine at these settings."""
         return self._engine.refine(settings, report)

@@ -43,6 +43,11 @@ class Trials(DelegatingEngine):
         super().prepare(candidates, report)
         self._forget()
 
+    def prepare_roughly(self, candidates: Sequence[Candidate], report: Report) -> None:
+        """Prepare the engine roughly; what it said before may be better now."""
+        super().prepare_roughly(candidates, report)
+        self._forget()
+
     def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:
         """Refine the engine; what it said before may be better now."""
         changed = super().refine(settings, report)

@@ -46,7 +46,7 @@ def diagnose(
     if isinstance(verdict, Agreement):
         return baseline_findings(model, baseline, found, verdict.reasons)
     tell(where_it_differs(model, baseline, found))
-    engine.prepare(engine.candidates, report)
+    engine.prepare_roughly(engine.candidates, report)
     discrepancy = RigDiscrepancy(model, baseline.values)
     model = model.with_tolerance(USUAL_ROUGH**2 * discrepancy.rough[0])
     screening = screen(model, linearise(model, baseline.values), report)

@@ -71,6 +71,10 @@ class HumEngine(DelegatingEngine):
         """Prepare the engine for all but the hum."""
         super().prepare([c for c in candidates if c is not self._hum], report)
 
+    def prepare_roughly(self, candidates: Sequence[Candidate], report: Report) -> None:
+        """Prepare the engine roughly for all but the hum."""
+        super().prepare_roughly([c for c in candidates if c is not self._hum], report)
+
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
         """Predict as the engine does, with the hum added at the output."""
         signals = dict(super().predict(run, [s for s in settings if s.candidate is not self._hum]))

@@ -45,6 +45,7 @@ def first_fits(model: ObservedModel, found: Screening, report: Report) -> list[F
 
 def singles(model: ObservedModel, found: Screening, firsts: Sequence[FirstFit], report: Report) -> list[Fitted]:
     """First fits continued with all that floats."""
+    model.engine.prepare([found.candidates[one.number] for one in firsts], report)
     fits = []
     for count, one in enumerate(firsts):
         report("fits", count, len(firsts))
@@ -88,6 +89,7 @@ def pairs(model: ObservedModel, found: Screening, first: Fitted, report: Report)
     tests = screened(beside, each, least_degrees(model))
     order = np.argsort(-tests.explained)
     shown = [int(n) for n in order if tests.p_values[n] <= RATES.level][:MOST_PAIRS_PER_FIRST]
+    model.engine.prepare([others[n] for n in shown], report)
     fits = []
     for count, number in enumerate(shown):
         report("pairs", count, len(shown))

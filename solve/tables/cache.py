@@ -18,7 +18,7 @@ from solve.tables.depth_press import DepthPress
 
 def key(job: DepthPress) -> str:
     """Hash of model, mesh, depth, places, and the source of all that presses."""
-    asked = repr((job.depth_mm, job.shares, job.back, job.parts))
+    asked = repr((job.depth_mm, job.shares, job.back, job.returns, job.parts))
     return data_hash([source_hash(DepthPress.__module__), _model_content(job.model), mesh_hash(job.tet_mesh), asked])
 
 

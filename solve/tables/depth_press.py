@@ -26,7 +26,7 @@ RETURN = 0.95, 0.85, 0.75, 0.6, 0.4, 0.15, 0.03
 class DepthPress:
     """One press of a model on a mesh to depth_mm, seen at shares (n,) of it, growing from above 0 to 1.
 
-    back : numbers of the shares from which the dot also returns; seen on the way at RETURN of that depth.
+    back : numbers of the shares from which the dot also returns; seen on the way at `returns` of that depth.
     parts : steps to each share: slip takes several, and what guides it. guides : whether its equilibria are kept for
     others.
     guided_by : name in solve.tables.cache of such a press, to start from; "" for none.
@@ -37,6 +37,7 @@ class DepthPress:
     depth_mm: float
     shares: tuple[float, ...]
     back: tuple[int, ...] = ()
+    returns: tuple[float, ...] = RETURN
     parts: int = 1
     guides: bool = False
     guided_by: str = ""
@@ -79,7 +80,7 @@ def _press_all(
         down.append(_outputs(setup, past))
         if number in job.back:
             returning = past[-1:]
-            for part in RETURN:
+            for part in job.returns:
                 _press_to(setup, linear, returning, part * share)
                 back.append(_outputs(setup, returning))
     return np.array([*down, *back]), found

@@ -10,7 +10,7 @@ from foundation.progress import Report
 from solve.reduced.model import ReducedModel
 from solve.solution.errors import NoEquilibriumError
 from solve.tables import cache
-from solve.tables.depth_press import RETURN, DepthPress
+from solve.tables.depth_press import DepthPress
 from solve.tables.reduction import Reduction
 
 
@@ -69,7 +69,7 @@ def run_all(
 
 def _effort(job: DepthPress) -> float:
     """Rough effort of a press: steps down and back, of which slip takes as many more, by nodes."""
-    return len(job.tet_mesh.points_mm) * job.parts * (len(job.shares) + len(job.back) * len(RETURN))
+    return len(job.tet_mesh.points_mm) * job.parts * (len(job.shares) + len(job.back) * len(job.returns))
 
 
 def _are_worth_processes(jobs: Mapping[str, DepthPress | Reduction]) -> bool:

@@ -55,6 +55,11 @@ class DotPositions:
         for prepared in self._at.values():
             prepared.add(candidates, (), report)
 
+    def add_roughly(self, candidates: Sequence[Candidate], report: Report) -> None:
+        """Press these candidates a little, at all positions of the dot. NoEquilibriumError."""
+        for prepared in self._at.values():
+            prepared.add_roughly(candidates, report)
+
     def refine(self, settings: Sequence[Setting], report: Report) -> list[Setting]:
         """Press these settings at all positions of the dot; returns those for which that changed what matters."""
         changed = [one for prepared in self._at.values() for one in prepared.refine(settings, report)]

@@ -132,6 +132,11 @@ class SegmentEngine:
         self.dot_positions.add(candidates, report)
         self._forget()
 
+    def prepare_roughly(self, candidates: Sequence[Candidate], report: Report) -> None:
+        """Press these candidates at few places on a coarse mesh. NoEquilibriumError."""
+        self.dot_positions.add_roughly(candidates, report)
+        self._forget()
+
     def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:
         """Press each of these settings. NoEquilibriumError where the baseline has none."""
         self._forget()

@@ -63,15 +63,23 @@ class PathHistory:
         return _curve((*RETURN[::-1], 1.0), whole.transpose(1, 0, 2))
 
 
-def path_changes(outputs: Floats, base: Floats, shares: Sequence[float], fit: ResponseTable) -> Floats:
+def path_changes(
+    outputs: Floats,
+    base: Floats,
+    shares: Sequence[float],
+    turning: Sequence[int],
+    back: Sequence[float],
+    fit: ResponseTable,
+) -> Floats:
     """Changes (n + b r, 2 + e) from outputs of a press down and up; base (n, 2 + e) : of the baseline down.
 
+    turning (b,) : numbers of the shares where it turns back, to be seen at parts (r,) of that depth.
     The baseline's way back is its way down; charges on a way back are per force at the depth where it began.
     """
     found = [_relative_changes(outputs[: len(shares)], base, base[:, :1])]
-    for number, m in enumerate(TURNING_NUMBERS):
-        rows = outputs[len(shares) + number * len(RETURN) :][: len(RETURN)]
-        depths = np.array(RETURN) * shares[m]
+    for number, m in enumerate(turning):
+        rows = outputs[len(shares) + number * len(back) :][: len(back)]
+        depths = np.array(back) * shares[m]
         before = np.column_stack(
             [np.interp(depths, TABLE_SHARES, column) for column in fit.table[:, 0, : outputs.shape[1]].T]
         )

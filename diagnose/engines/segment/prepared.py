@@ -7,7 +7,7 @@ import numpy as np
 
 from diagnose.engines.segment import path_history as path
 from diagnose.engines.segment.depth import deepest_mm, offset_reach_mm, round_up_depth
-from diagnose.engines.segment.interpolation import Differences, candidate_effect
+from diagnose.engines.segment.interpolation import Differences, PressedEffect, candidate_effect
 from diagnose.engines.segment.presses import (
     CHEAP_NODES,
     DEPTH_SHARES,
@@ -19,6 +19,7 @@ from diagnose.engines.segment.presses import (
     with_dot_moved,
 )
 from diagnose.engines.segment.response import FilmPlate
+from diagnose.engines.segment.rough_presses import at_all_places, rough_effect
 from diagnose.forward import Candidate, Setting
 from diagnose.signals.recording import Recording
 from diagnose.vocabulary.layers.viscoelasticity import LARGEST_SHARE, relaxable
@@ -64,6 +65,8 @@ class Prepared:
         self.presses = Presses(model, tet_mesh, options, self.depth_mm)
         self.depths = Depths(DEPTH_SHARES)
         self._changes: dict[Name, Floats] = {}
+        self._rough_changes: dict[Name, Floats] = {}
+        self._fully: set[Name] = set()
         self._differences: dict[Name, Differences] = {}
         self.shortfalls: dict[Name, str] = {}
         finest = finer_mesh(model, options, FINEST_ELEMENT_RATIO, MOST_NODES)
@@ -119,6 +122,18 @@ class Prepared:
         self._changes |= self._press_changes(wanted, report)
         for candidate in candidates:
             self._replace_failed_presses(candidate)
+            self._fully.add(_coordinates_name(candidate))
+
+    def add_roughly(self, candidates: Sequence[Candidate], report: Report) -> None:
+        """Few and coarse presses of candidates without any; all of them where a rough one fails. NoEquilibriumError."""
+        new = [one for one in candidates if _coordinates_name(one) not in self._fully]
+        points = {press_name(one, point): (one, point) for one in new for point in rough_effect(one).points}
+        known = self._changes.keys() | self._rough_changes.keys()
+        unknown = {name: one for name, one in points.items() if name not in known}
+        jobs = {name: self.presses.candidate_job(*one, roughly=True) for name, one in unknown.items()}
+        self._rough_changes |= self._press_changes(jobs, report)
+        failed = [one for name, (one, _) in unknown.items() if name not in self._rough_changes]
+        self.add(list(dict.fromkeys(failed)), (), report)
 
     def refine(self, settings: Sequence[Setting], report: Report) -> list[Setting]:
         """Press settings alone where they are not pressed yet; returns those that differ by more than RELEVANT_CHANGE.
@@ -160,11 +175,12 @@ class Prepared:
 
     def _change_of_press(self, job: DepthPress, base: Floats, found: Floats) -> Floats:
         """Change of a press against the baseline on the same mesh; charges scaled to those of the finest mesh."""
-        values = path.path_changes(found, base, DEPTH_SHARES, self.raw) if job.back else change(base, found)
+        along = job.shares, job.back, job.returns, self.raw
+        values = path.path_changes(found, base, *along) if job.back else change(base, found)
         force, _, *charges = self._smooth[-1]
         per_force = (np.array(charges) / force) / (base[-1, 2:] / base[-1, 0])
         values[:, 2:] *= np.clip(np.nan_to_num(per_force, nan=1.0), *TRUSTED)
-        return values
+        return values if job.shares == DEPTH_SHARES else at_all_places(values, DEPTH_SHARES)
 
     def _replace_failed_presses(self, candidate: Candidate) -> None:
         """Take the nearest press of this candidate where the 3D model found no equilibrium.
@@ -197,6 +213,10 @@ class Prepared:
         ]
         return np.sum(parts, axis=0) if parts else None
 
+    def _effect(self, candidate: Candidate) -> PressedEffect:
+        """Layout of the presses of a candidate, as far as it was pressed."""
+        return candidate_effect(candidate) if _coordinates_name(candidate) in self._fully else rough_effect(candidate)
+
     def elastic_settings(self, settings: Sequence[Setting]) -> list[Setting]:
         """Settings that change the table: they need presses and do not depend on the path."""
         return [one for one in settings if not one.candidate.traits.shows_on_return and _needs_press(one)]
@@ -215,7 +235,7 @@ class Prepared:
 
         They come from the first presses, and from what those beyond differ by.
         """
-        candidate, effect = setting.candidate, candidate_effect(setting.candidate)
+        candidate, effect = setting.candidate, self._effect(setting.candidate)
         what = f"{candidate.mechanism} of {candidate.component}"
         weighed = zip(effect.weights(setting.values), effect.points, strict=True)
         parts = [
@@ -227,9 +247,10 @@ class Prepared:
         return np.sum(parts, axis=0) if parts else None
 
     def _pressed_change(self, name: Name, what: str) -> Floats:
-        if name not in self._changes:
+        found = self._changes.get(name, self._rough_changes.get(name))
+        if found is None:
             raise ValueError(f"{what} was not prepared")
-        return self._changes[name]
+        return found
 
 
 def _needs_press(setting: Setting) -> bool:

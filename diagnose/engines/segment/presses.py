@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from diagnose.engines.segment.path_history import TURNING_NUMBERS
+from diagnose.engines.segment.rough_presses import rough_job
 from diagnose.forward import Candidate
 from foundation.arrays import Floats
 from foundation.executor import Executor
@@ -74,17 +75,20 @@ class Presses:
         tet_mesh = mesh_of(model, self.model, *(mesh or (self.tet_mesh, self.options)), MOST_NODES)
         return DepthPress(replace(without_gap(model), physics=own, readout=None), tet_mesh, self.depth_mm, DEPTH_SHARES)
 
-    def candidate_job(self, candidate: Candidate, point: Sequence[float]) -> tuple[DepthPress, int]:
+    def candidate_job(
+        self, candidate: Candidate, point: Sequence[float], roughly: bool = False
+    ) -> tuple[DepthPress, int]:
         """Job that presses a candidate at a point (q,), and the number of its mesh.
 
-        It is 0 for the diagnosis mesh, 1 for the middle one.
+        It is 0 for the diagnosis mesh, 1 for the middle one. roughly : as diagnose.engines.segment.rough_presses.
         """
         back = TURNING_NUMBERS if candidate.traits.shows_on_return else ()
-        finer = candidate.traits.on_middle_mesh or (self.is_middle_mesh_cheap and not back)
+        finer = not roughly and (candidate.traits.on_middle_mesh or (self.is_middle_mesh_cheap and not back))
         changed = with_mechanisms(self.model, [candidate.as_mechanism(point)])
         job = self.press_job(changed, self.middle_mesh if finer else None)
         parts = FRICTION_SUBSTEPS if any(term.follows_time for term in job.model.physics.terms) else 1
-        return replace(job, back=back, parts=parts), int(finer)
+        whole = replace(job, back=back, parts=parts)
+        return rough_job(whole) if roughly else whole, int(finer)
 
     def run_with_baselines(
         self, wanted: Mapping[Name, tuple[DepthPress, int]], report: Report, executor: Executor
@@ -103,7 +107,7 @@ class Presses:
         outputs = run_all(jobs, report, executor=executor)
         own = dict(zip(others, outputs[len(wanted) :], strict=True))
         found = {
-            name: (job, own.get(name, bases[base]), seen)
+            name: (job, own.get(name, self._seen_as(job, bases[base])), seen)
             for (name, (job, base)), seen in zip(wanted.items(), outputs, strict=False)
         }
         return {name: three for name, three in found.items() if len(three[1]) and len(three[2])}
@@ -122,7 +126,12 @@ class Presses:
         if patches == known or job.model.segment.section == "solid":
             return None
         moved = with_rims_of_patches(job.tet_mesh, job.model.segment, patches)
-        return replace(self.press_job(self.model), tet_mesh=moved)
+        return replace(self.press_job(self.model), tet_mesh=moved, shares=job.shares)
+
+    @staticmethod
+    def _seen_as(job: DepthPress, base: Floats) -> Floats:
+        """Outputs of the baseline at the shares of a job."""
+        return base[[DEPTH_SHARES.index(share) for share in job.shares]]
 
 
 def with_dot_moved(model: Model, place: Place) -> Model:

@@ -162,6 +162,8 @@ class ToyEngine:
     def prepare(self, candidates, report):
         pass
 
+    prepare_roughly = prepare
+
     def refine(self, _settings, _report):
         return ()
 

@@ -61,6 +61,8 @@ class ToyEngine:
     def prepare(self, candidates, report):
         report("prepared", len(candidates), len(candidates))
 
+    prepare_roughly = prepare
+
     def refine(self, _settings, _report):
         return ()
 

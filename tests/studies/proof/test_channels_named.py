@@ -54,6 +54,8 @@ class Known:
     def prepare(self, _candidates, _report):
         """Nothing to press."""
 
+    prepare_roughly = prepare
+
     def refine(self, _settings, _report):
         return ()
 
