@@ -66,7 +66,6 @@ class Prepared:
         self.depths = Depths(DEPTH_SHARES)
         self._changes: dict[Name, Floats] = {}
         self._rough_changes: dict[Name, Floats] = {}
-        self._fully: set[Name] = set()
         self._differences: dict[Name, Differences] = {}
         self.shortfalls: dict[Name, str] = {}
         finest = finer_mesh(model, options, FINEST_ELEMENT_RATIO, MOST_NODES)
@@ -122,12 +121,10 @@ class Prepared:
         self._changes |= self._press_changes(wanted, report)
         for candidate in candidates:
             self._replace_failed_presses(candidate)
-            self._fully.add(_coordinates_name(candidate))
 
     def add_roughly(self, candidates: Sequence[Candidate], report: Report) -> None:
-        """Few and coarse presses of candidates without any; all of them where a rough one fails. NoEquilibriumError."""
-        new = [one for one in candidates if _coordinates_name(one) not in self._fully]
-        points = {press_name(one, point): (one, point) for one in new for point in rough_effect(one).points}
+        """Few and coarse presses of candidates; all of them where a rough one fails. NoEquilibriumError."""
+        points = {press_name(one, point): (one, point) for one in candidates for point in rough_effect(one).points}
         known = self._changes.keys() | self._rough_changes.keys()
         unknown = {name: one for name, one in points.items() if name not in known}
         jobs = {name: self.presses.candidate_job(*one, roughly=True) for name, one in unknown.items()}
@@ -213,10 +210,6 @@ class Prepared:
         ]
         return np.sum(parts, axis=0) if parts else None
 
-    def _effect(self, candidate: Candidate) -> PressedEffect:
-        """Layout of the presses of a candidate, as far as it was pressed."""
-        return candidate_effect(candidate) if _coordinates_name(candidate) in self._fully else rough_effect(candidate)
-
     def elastic_settings(self, settings: Sequence[Setting]) -> list[Setting]:
         """Settings that change the table: they need presses and do not depend on the path."""
         return [one for one in settings if not one.candidate.traits.shows_on_return and _needs_press(one)]
@@ -235,12 +228,12 @@ class Prepared:
 
         They come from the first presses, and from what those beyond differ by.
         """
-        candidate, effect = setting.candidate, self._effect(setting.candidate)
+        candidate = setting.candidate
+        weighed = _weighed_presses(candidate_effect(candidate), setting)
+        if not weighed.keys() <= self._changes.keys():
+            weighed = _weighed_presses(rough_effect(candidate), setting)
         what = f"{candidate.mechanism} of {candidate.component}"
-        weighed = zip(effect.weights(setting.values), effect.points, strict=True)
-        parts = [
-            w * self._pressed_change(press_name(candidate, p), what) for w, p in weighed if abs(w) > NEGLIGIBLE_WEIGHT
-        ]
+        parts = [weight * self._pressed_change(name, what) for name, weight in weighed.items()]
         more = self._differences.get(_coordinates_name(candidate))
         beyond = more.difference_at(setting.values) if more is not None else None
         parts += [beyond] if beyond is not None else []
@@ -256,6 +249,12 @@ class Prepared:
 def _needs_press(setting: Setting) -> bool:
     """Whether a setting needs a press."""
     return any(setting.values[n] for n in candidate_effect(setting.candidate).pressed)
+
+
+def _weighed_presses(effect: PressedEffect, setting: Setting) -> dict[Name, float]:
+    """Names of the presses of a layout that count at a setting, with their weights. ValueError beyond its bounds."""
+    weighed = zip(effect.points, effect.weights(setting.values), strict=True)
+    return {press_name(setting.candidate, point): w for point, w in weighed if abs(w) > NEGLIGIBLE_WEIGHT}
 
 
 def _pressed_part(setting: Setting) -> Setting:

@@ -1,6 +1,6 @@
 """Few and coarse presses of a candidate, which tell whether it is worth all of its presses.
 
-Each coordinate is pressed at its smallest node on either side, a one-sided one at the middle of its nodes, on the
+Each coordinate is pressed at its smallest node on either side, a one-sided one at every second of its nodes, on the
 diagnosis mesh, at three depths and, where the path matters, at three places of each way back. Along depth and way back
 the change is linear in between.
 """
@@ -33,7 +33,7 @@ def _rough_nodes(coordinate: Coordinate) -> tuple[float, ...]:
     if not coordinate.nodes or coordinate.low < 0.0 < coordinate.high:
         sides = [[node for node in coordinate.nodes if sign * node > 0.0] for sign in (-1.0, 1.0)]
         return tuple(min(side, key=abs) for side in sides if side)
-    return (coordinate.nodes[len(coordinate.nodes) // 2],)
+    return coordinate.nodes[1::2] or coordinate.nodes
 
 
 def rough_job(job: DepthPress) -> DepthPress:
