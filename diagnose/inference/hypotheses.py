@@ -63,6 +63,11 @@ class Hypothesis:
         return () if self.fit is None else self.fit.candidates
 
     @property
+    def names(self) -> frozenset[tuple[str, str]]:
+        """Names of its mechanisms."""
+        return frozenset(candidate.name for candidate in self.candidates)
+
+    @property
     def score(self) -> float:
         """Logarithm of the predictive density of all conditions, nats."""
         return float(self.scored.log_scores.sum())
@@ -88,8 +93,7 @@ class Compared:
     @property
     def parts_of_best(self) -> list[int]:
         """Numbers of the explanations that hold some of the mechanisms of the best only, best first."""
-        names = [{candidate.name for candidate in one.candidates} for one in self.explained]
-        return [n for n, own in enumerate(names) if own < names[0]]
+        return [n for n, one in enumerate(self.explained) if one.names < self.explained[0].names]
 
     def with_first(self, number: int) -> "Compared":
         """The same with another explanation before all others."""
@@ -250,15 +254,14 @@ def simplest(judge: Judge, ordered: Sequence[Hypothesis], probabilities: Floats)
     """Number of the first, or of what holds a part of its mechanisms only and is not excluded beside it. Where a part
     is probable and accounts for all but flaws, the others are details of its law.
     """
-    names = [{candidate.name for candidate in one.candidates} for one in ordered]
 
     def is_enough(number: int) -> bool:
         one = ordered[number]
         whole = accounts_for_all(judge.error(one), judge.known_share(one))
         return as_good(judge, ordered, probabilities, number) or (whole and is_probable(ordered, probabilities, number))
 
-    parts = [n for n in range(len(ordered)) if names[n] < names[0] and is_enough(n)]
-    return min(parts, key=lambda n: len(names[n]), default=0)
+    parts = [n for n, one in enumerate(ordered) if one.names < ordered[0].names and is_enough(n)]
+    return min(parts, key=lambda n: len(ordered[n].names), default=0)
 
 
 def as_good(judge: Judge, ordered: Sequence[Hypothesis], probabilities: Floats, number: int) -> bool:

@@ -37,7 +37,7 @@ class StubJudge:
 
 def hypothesis(names: str, error: float, share: float) -> Any:
     """One whose mechanisms are the letters of names."""
-    return SimpleNamespace(candidates=[SimpleNamespace(name=(one, "film")) for one in names], error=error, share=share)
+    return SimpleNamespace(names=frozenset((one, "film") for one in names), error=error, share=share)
 
 
 def named(error: float, share: float, probability: float, part: str = "A", apart_by: float = 1.0) -> str:
@@ -45,7 +45,7 @@ def named(error: float, share: float, probability: float, part: str = "A", apart
     ordered = [hypothesis("AB", PAIR_ERROR, 0.99), hypothesis(part, error, share)]
     judge: Any = StubJudge(apart_by)
     number = simplest(judge, ordered, np.array([1.0 - probability, probability, 0.0, 0.0]))
-    return "".join(one.name[0] for one in ordered[number].candidates)
+    return "".join(sorted(name for name, _ in ordered[number].names))
 
 
 def test_a_probable_part_that_accounts_for_all_but_flaws_is_named_alone():
