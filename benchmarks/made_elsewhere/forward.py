@@ -5,7 +5,7 @@ its own, the ridge as a rigid cylinder behind a penalty. Lengths in mm, stresses
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import ngsolve as ng
 import numpy as np
@@ -16,9 +16,9 @@ from benchmarks.made_elsewhere.rigs import Bench, Sheet
 
 PENALTY = 1e4  # N/mm3: a pressure of 1 MPa sinks in by 0.1 um
 ROUNDING = 1e-4  # mm, over which the pressure sets in
-GAP_THICKNESS = 0.002  # mm, of the void that stands for parted faces
-GAP_BULK = 100.0  # MPa, of the void where it is squeezed
-GAP_REST = 1e-4  # MPa, of the void where it is open
+GAP_THICKNESS = 0.008  # mm, of the void that stands for parted faces
+GAP_BULK = 20.0  # MPa, of the void where it is squeezed: 0.2 MPa close it by a tenth of its thickness
+GAP_REST = 1e-4  # MPa, of the void in any case: a slip of 0.05 mm meets 0.0006 MPa
 FORCE_TOLERANCE = 1e-7
 MOST_STEPS = 30
 LARGEST_GROWTH = 20.0  # of the residual in one iteration: contact makes it jump
@@ -56,7 +56,9 @@ def bands(bench: Bench, fineness: Fineness) -> list[Band]:
         between.append(Band("seam", GAP_THICKNESS, 1, False))
     film = Band("film", bench.film.thickness, 1, True)
     above = [film, sheet("medium1", bench.medium1, True), sheet("effector", bench.effector, True)]
-    return [sheet("medium2", bench.medium2, False), *between, *above]
+    # the seam is of medium 2 where it holds
+    cushion = replace(bench.medium2, thickness=bench.medium2.thickness - (GAP_THICKNESS if bench.loose else 0.0))
+    return [sheet("medium2", cushion, False), *between, *above]
 
 
 def stations(bench: Bench, columns: int) -> NDArray[np.float64]:
@@ -247,8 +249,8 @@ class SlicePress:
         form += ng.Variation(energy.Compile() * ng.dx(definedon=self.mesh.Materials("film"), bonus_intorder=2))
         if self.bench.loose:
             j = ng.Det(gradient)
-            squeezed = GAP_BULK / 2 * ng.IfPos(1 - j, (1 - j) ** 2, 0.0)
-            rest = GAP_REST * GAP_THICKNESS**2 / 2 * ng.InnerProduct(ng.Grad(u), ng.Grad(u))
+            squeezed = GAP_BULK / 3 * ng.IfPos(1 - j, (1 - j) ** 3, 0.0)
+            rest = GAP_REST / 2 * ng.InnerProduct(ng.Grad(u), ng.Grad(u))
             form += ng.Variation((squeezed + rest) * ng.dx(definedon=self.mesh.Materials("void")))
         if self.bench.side_stiffness is not None:
             form += ng.Variation(self.bench.side_stiffness / 2 * ng.InnerProduct(u, u) * ng.ds("side"))
