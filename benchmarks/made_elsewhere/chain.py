@@ -51,9 +51,7 @@ class Noise:
     adc_step_V: float
 
 
-def drawn(
-    force: float, voltage: float, loudness: float, rng: np.random.Generator
-) -> tuple[Noise, Widths, Errors]:
+def drawn(force: float, voltage: float, loudness: float, rng: np.random.Generator) -> tuple[Noise, Widths, Errors]:
     """Noise as shares of the largest signals, widths that go with it, and errors inside them."""
     sd = loudness * rng.uniform(0.7, 1.3) * 0.006 * voltage
     noise = Noise(
@@ -76,7 +74,12 @@ def voltage(bench: Bench, charge: Signal) -> Signal:
     conductance = 1 / bench.resistance + (1 / bench.leak if bench.leak else 0.0)
     a = conductance / (capacitance * 1e-6 * RATE)
     growth = -np.expm1(-a) / a
-    return lfilter([1.0], [1.0, -np.exp(-a)], growth * np.diff(charge, prepend=charge[0]) / capacitance)
+    volts = lfilter([1.0], [1.0, -np.exp(-a)], growth * np.diff(charge, prepend=charge[0]) / capacitance)
+    if bench.cable is None:
+        return volts
+    b = 2 * np.pi * bench.cable / RATE
+    now, last = 1 + np.expm1(-b) / b, -np.expm1(-b) / b - np.exp(-b)  # exact for a voltage that is linear between rows
+    return lfilter([now, last], [1.0, -np.exp(-b)], volts)
 
 
 def coloured(sd: float, memory: float, n: int, rng: np.random.Generator) -> Signal:

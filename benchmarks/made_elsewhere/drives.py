@@ -67,19 +67,3 @@ def programme(depth: float, clear: float, rng: np.random.Generator) -> list[Path
     ]
     order = [0, *(1 + rng.permutation(4))]
     return [path(str(kinds[n][0]), float(kinds[n][1]), float(kinds[n][2]), clear, rng) for n in order]
-
-
-def moments(press: Path, depth: float) -> NDArray[np.float64]:
-    """Times that follow a press: every sixteenth of the depth, and closer after a motion than late in a hold."""
-    picked, travel, moved = [0], 0.0, 0
-    for n in range(1, len(press.time)):
-        change = abs(press.meant[n] - press.meant[n - 1])
-        travel += change if press.meant[n] > 0 or press.meant[n - 1] > 0 else 0.0
-        if change > 1e-4 * depth:
-            moved = n
-        pause = 0.008 + 0.25 * (press.time[n] - press.time[moved])
-        touched = (press.meant[n] > 0) != (press.meant[n - 1] > 0)
-        if touched or travel > depth / 16 or (press.time[n] - press.time[picked[-1]] > pause and moved < n):
-            picked.append(n)
-            travel = 0.0
-    return press.time[np.unique([*picked, len(press.time) - 1])]

@@ -14,7 +14,7 @@ class Sheet:
     poisson: float
     density: float = 1000.0
     gent_limit: float | None = None  # largest I1 - 3 of Gent's law (Rubber Chem. Technol. 69, 1996)
-    relative_moduli: tuple[float, ...] = ()  # of its Maxwell branches
+    relative_moduli: tuple[float, ...] = ()  # of what relaxes of its shear modulus
     relaxation_times: tuple[float, ...] = ()  # s
 
     @property
@@ -55,9 +55,9 @@ class Bench:
     side_stiffness: float | None  # N/mm3 on effector, medium 1 and film; None: free
     film: PolarFilm = field(default_factory=PolarFilm)
     glue: Sheet | None = None  # between medium 2 and film
-    loose: tuple[float, float] | None = None  # part of the half length where film and medium 2 are parted
     aside: float = 0.0  # of the dot
     leak: float | None = None  # MOhm beside the input
+    cable: float | None = None  # Hz, corner of the RC of a cable behind the amplifier
 
     @property
     def film_capacitance(self) -> float:
@@ -181,7 +181,9 @@ def head(bench: Bench) -> str:
 
 def run_table(file: str, label: str, widths: dict[str, float]) -> str:
     """One table [[runs]]."""
-    return RUN.format(file=file, label=label, widths="\n".join(f"{name} = {value:.4g}" for name, value in widths.items()))
+    return RUN.format(
+        file=file, label=label, widths="\n".join(f"{name} = {value:.4g}" for name, value in widths.items())
+    )
 
 
 def changed(bench: Bench, layer: str, **values: object) -> Bench:

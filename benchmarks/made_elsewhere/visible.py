@@ -30,7 +30,7 @@ def whitened(signal: Signal, sd: float, memory: float, step: float) -> Signal:
 
 
 def multiple(pairs: list[Pair], noise: Noise, widths: Widths) -> float:
-    """The size that is left where gains, lag and zeros of each run, faint hum and what codes differ by may absorb it."""
+    """The size left where gains, lag and zeros of each run, faint hum and what codes differ by may absorb it."""
 
     def rows(force: Signal, volts: Signal) -> Signal:
         f = whitened(force, noise.force_sd_N, noise.force_ar1, 0.0)
