@@ -7,7 +7,7 @@ draws paths, jitter, noise and the errors of gain, lag and zeros, which stay wit
 `multiple_of_visible` is the projected signal-to-noise ratio over 4, where gain, lag and zeros of each run (declared
 widths), hum of a fifth of the noise, and an inter-code floor (0.5 % of force and voltage, 0.5 um of displacement zero)
 may absorb the effect. `kind` is none, single, or ambiguous below the visible size, where `acceptable` lists what may be
-said. Faint hum is in all of them. Takes a quarter of an hour; names after the seed make these alone.
+said. Faint hum is in all of them. Takes five to ten minutes; names after the seed make these alone.
 """
 
 import json
