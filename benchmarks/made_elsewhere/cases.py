@@ -52,7 +52,7 @@ CASES = {
     ),
     "e02": Hidden(
         "C",
-        1.0,
+        0.6,
         "adhesive-compliance",
         "bond-film-medium2",
         {"thickness_um": 60.0, "youngs_modulus_MPa": 0.15, "poisson_ratio": 0.49},
@@ -71,7 +71,7 @@ CASES = {
     ),
     "e05": Hidden(
         "C",
-        1.0,
+        0.5,
         "viscoelasticity",
         "medium2",
         {
@@ -93,7 +93,7 @@ CASES = {
     ),
     "e07": Hidden(
         "D",
-        1.0,
+        0.6,
         "hyperelastic-stiffening",
         "medium2",
         {"gent_Jm": 1.5},
@@ -103,18 +103,18 @@ CASES = {
     "e08": Hidden("C", 1.0),
     "e09": Hidden(
         "C",
-        1.0,
+        0.8,
         "dot-offset",
         "dot",
-        {"offset_mm": 0.5},
-        lambda bench: replace(bench, aside=0.5),
+        {"offset_mm": 0.8},
+        lambda bench: replace(bench, aside=0.8),
     ),
     "e10": Hidden(
         "D",
         1.0,
         "property-error",
         "medium2",
-        {"thickness_factor": 0.95},
-        lambda bench: changed(bench, "medium2", thickness=0.95 * bench.medium2.thickness),
+        {"thickness_factor": 0.9},
+        lambda bench: changed(bench, "medium2", thickness=0.9 * bench.medium2.thickness),
     ),
 }
