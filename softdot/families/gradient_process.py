@@ -1,9 +1,9 @@
 """A Gaussian process of several outputs from values and slopes: gradient-enhanced kriging.
 
-The covariance is a quadratic polynomial (a trend whose size is fitted) and a squared exponential with a length along
-each axis; its derivatives are the covariances of slopes (Solak et al., NIPS 15, 2003; Laurent et al., Arch. Comput.
-Methods Eng. 26, 2019). The outputs share lengths and noise, found by the largest likelihood, and each has a variance of
-its own. A point left out with its slopes is predicted from the same factorisation (Dubrule, Math. Geol. 15, 1983).
+The covariance is a polynomial (a trend whose size is fitted) and a squared exponential with a length along each axis;
+its derivatives are the covariances of slopes (Solak et al., NIPS 15, 2003; Laurent et al., Arch. Comput. Methods Eng.
+26, 2019). The outputs share lengths and noise, found by the largest likelihood, and each has a variance of its own. A
+point left out with its slopes is predicted from the same factorisation (Dubrule, Math. Geol. 15, 1983).
 """
 
 from dataclasses import dataclass
@@ -15,10 +15,19 @@ from scipy.optimize import minimize
 
 from foundation.arrays import Floats
 
-GUESS = {"length": 3.0, "trend": 1.0, "noise": 1e-6, "slope noise": 1e-5}
-BOUNDS = {"length": (0.3, 30.0), "trend": (1e-3, 1e3), "noise": (1e-9, 1e-2), "slope noise": (1e-9, 1e-1)}
-"""First guess of each hyperparameter, and its bounds: lengths over half a range, the others over the variance."""
 MOST_ITERATIONS = 60
+
+
+class Prior(NamedTuple):
+    """What is assumed before any data. power : of the trend, 1 a line, 2 a quadratic polynomial. The others: least,
+    first guess and largest value of each hyperparameter, lengths in the unit of the places, others over the variance.
+    """
+
+    power: int = 2
+    length: tuple[float, float, float] = (0.3, 3.0, 30.0)
+    trend: tuple[float, float, float] = (1e-3, 1.0, 1e3)
+    noise: tuple[float, float, float] = (1e-9, 1e-6, 1e-2)
+    slope_noise: tuple[float, float, float] = (1e-9, 1e-5, 1e-1)
 
 
 class Prediction(NamedTuple):
@@ -60,7 +69,7 @@ class Scales:
 class GradientProcess:
     """The process through values (n, m) and slopes (n, d, m), None without, at places (n, d).
 
-    scales : hyperparameters where they are known; else they are fitted, from start where that is given.
+    scales : hyperparameters where they are known; else they are fitted, from start where that is given, within prior.
     """
 
     def __init__(
@@ -70,8 +79,9 @@ class GradientProcess:
         slopes: Floats | None,
         scales: Scales | None = None,
         start: Scales | None = None,
+        prior: Prior = Prior(),
     ) -> None:
-        self.places, self.with_slopes = places, slopes is not None
+        self.places, self.prior, self.with_slopes = places, prior, slopes is not None
         self._middle = values.mean(axis=0)
         count, axes = places.shape
         self._data = values - self._middle
@@ -86,19 +96,22 @@ class GradientProcess:
     def predict(self, places: Floats) -> Prediction:
         """Mean, deviation and slopes of the mean at places (q, d)."""
         count = len(places)
-        across = cross_covariance(places, self.places, self.scales, True, self.with_slopes)
+        across = self._across(places, slopes=True)
         mean = across @ self._weights
         slopes = mean[count:].reshape(places.shape[1], count, -1).transpose(1, 0, 2)
         return Prediction(self._middle + mean[:count], self._deviation(places, across[:count]), slopes)
 
     def mean(self, places: Floats) -> Floats:
         """Mean (q, m) alone at places (q, d)."""
-        across = cross_covariance(places, self.places, self.scales, False, self.with_slopes)
-        return np.asarray(self._middle + across @ self._weights)
+        return np.asarray(self._middle + self._across(places) @ self._weights)
 
     def deviation(self, places: Floats) -> Floats:
         """Standard deviation (q, m) alone at places (q, d)."""
-        return self._deviation(places, cross_covariance(places, self.places, self.scales, False, self.with_slopes))
+        return self._deviation(places, self._across(places))
+
+    def _across(self, places: Floats, slopes: bool = False) -> Floats:
+        """Covariance of values at places (q, d), and of slopes there, with the data."""
+        return cross_covariance(places, self.places, self.scales, slopes, self.with_slopes, self.prior.power)
 
     def _deviation(self, places: Floats, across: Floats) -> Floats:
         """Standard deviation (q, m) from the covariance (q, n) with the data."""
@@ -120,24 +133,26 @@ class GradientProcess:
 
     def _own_variance(self, places: Floats) -> Floats:
         """Variance (q,) of the values before any data, over that of the output."""
-        return np.asarray(1.0 + self.scales.trend * (1.0 + (places**2).sum(axis=1)) ** 2)
+        return np.asarray(1.0 + self.scales.trend * (1.0 + (places**2).sum(axis=1)) ** self.prior.power)
 
     def _covariance(self, scales: Scales) -> Floats:
         """Covariance of the data with noise, over the variance of the output."""
-        found = cross_covariance(self.places, self.places, scales, self.with_slopes, self.with_slopes)
+        with_slopes = self.with_slopes
+        found = cross_covariance(self.places, self.places, scales, with_slopes, with_slopes, self.prior.power)
         noise = np.where(self._is_slope, scales.slope_noise, scales.noise)
         found[np.diag_indices_from(found)] += noise + 1e-10 * found.diagonal()
         return found
 
     def _fitted(self, start: Scales | None) -> Scales:
         """Hyperparameters of the largest likelihood."""
-        axes = self.places.shape[1]
-        names = [*["length"] * axes, "trend", "noise", "slope noise"]
-        bounds = np.log([BOUNDS[name] for name in names])
-        first = np.log([GUESS[name] for name in names]) if start is None else start.logs
+        prior = self.prior
+        lengths = [prior.length] * self.places.shape[1]
+        least, guess, largest = np.log([*lengths, prior.trend, prior.noise, prior.slope_noise]).T
+        first = guess if start is None else start.logs
+        bounds = np.column_stack([least, largest])
         options = {"maxiter": MOST_ITERATIONS, "maxfun": 100 * MOST_ITERATIONS}
         found = minimize(self._unlikelihood, first, method="L-BFGS-B", bounds=bounds, options=options)
-        return Scales.of(np.clip(found.x, *bounds.T))
+        return Scales.of(np.clip(found.x, least, largest))
 
     def _unlikelihood(self, logs: Floats) -> float:
         """Negative logarithm of the likelihood over the number of data, the variances profiled out."""
@@ -150,10 +165,12 @@ class GradientProcess:
         return float(0.5 * (volume + np.log(np.maximum(variances, 1e-30)).mean()))
 
 
-def cross_covariance(places: Floats, others: Floats, scales: Scales, slopes: bool, other_slopes: bool) -> Floats:
+def cross_covariance(
+    places: Floats, others: Floats, scales: Scales, slopes: bool, other_slopes: bool, power: int = 2
+) -> Floats:
     """Covariance of values at places (q, d), followed by slopes along each axis, with those at others (n, d).
 
-    Over the variance of the output; shape (q or (1 + d) q, n or (1 + d) n).
+    Over the variance of the output; shape (q or (1 + d) q, n or (1 + d) n). power : of the trend (1 + x . x')^power.
     """
     (count, axes), (other_count, _) = places.shape, others.shape
     inverse = scales.lengths**-2.0
@@ -161,8 +178,8 @@ def cross_covariance(places: Floats, others: Floats, scales: Scales, slopes: boo
     smooth = np.exp(-0.5 * np.einsum("dqn,dqn,d->qn", bent, bent, scales.lengths**2))
     inner = 1.0 + places @ others.T
     found = np.empty((1 + axes * slopes, count, 1 + axes * other_slopes, other_count))
-    found[0, :, 0] = smooth + scales.trend * inner**2
-    rising = 2.0 * scales.trend * inner
+    found[0, :, 0] = smooth + scales.trend * inner**power
+    rising = power * scales.trend * inner ** (power - 1)
     if other_slopes:
         found[0, :, 1:] = (smooth * bent + rising * places.T[:, :, None]).transpose(1, 0, 2)
     if slopes:
@@ -170,7 +187,8 @@ def cross_covariance(places: Floats, others: Floats, scales: Scales, slopes: boo
     if slopes and other_slopes:
         both = found[1:, :, 1:]
         both[:] = -(smooth * bent)[:, :, None] * bent.transpose(1, 0, 2)[None]
-        both += 2.0 * scales.trend * others.T[:, None, None, :] * places[None, :, :, None]
+        bending = power * (power - 1) * scales.trend * inner ** max(power - 2, 0)
+        both += bending[None, :, None, :] * others.T[:, None, None, :] * places[None, :, :, None]
         for axis in range(axes):
             both[axis, :, axis] += smooth * inverse[axis] + rising
     return found.reshape(found.shape[0] * count, -1)

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.stats import norm, qmc
 
 from foundation.arrays import Bools, Floats
-from softdot.bayesian_search import choose_apart, fit_process, steps_beside
+from softdot.families.gradient_process import GradientProcess, Prior
 from softdot.sweeps.sampling import Axis, share_of, value_at_share
 
 FEWEST_READING = 3
@@ -23,12 +23,12 @@ LOG2_CANDIDATES, NEAR_CANDIDATES, CHOICE_SWITCH_SHARE = 9, 512, 0.2
 """Candidates all over the space, as a power of two, and number of those beside the best design, with the share of their
 choices that change.
 """
+STEP_DEVIATION = 0.12
+"""Standard deviation of steps beside a good design, in shares of an axis."""
 LEAST_DISTANCE = 0.1
 """Least distance of two tried designs, in shares of the axes."""
-LENGTH_RANGE, HALVING_VARIANCE = (0.3, 1.0, 10.0), 4e-3
-"""Length over which the deviation from the trend changes, in edges of the space: least, guess, largest. Variance of the
-logarithm of the least force by halving alone, in units of that between designs.
-"""
+PRIOR = Prior(power=1, length=(0.3, 1.0, 10.0), trend=(1e-3, 1.0, 1e4), noise=(1e-6, 1e-2, 1e2))
+"""Of shares of the axes: a linear trend, and noise, which is what halving the depth leaves of the least force."""
 
 
 def propose(
@@ -67,6 +67,30 @@ def candidates(axes: Sequence[Axis], best: Floats | None, seed: int) -> Floats:
     return np.concatenate([spread, near])
 
 
+def steps_beside(place: Floats, count: int, random: np.random.Generator) -> Floats:
+    """Random candidates (count, d) beside a place (d,), in shares of the axes."""
+    return np.clip(place + STEP_DEVIATION * random.standard_normal((count, len(place))), 0.0, 1.0)
+
+
+def choose_apart(gains: Floats, places: Floats, known: Floats, count: int, apart: float) -> list[int]:
+    """Numbers of at most count candidates with the largest gains (n,), each farther than apart from known ones
+    and from the others.
+
+    places : (n, f) of the candidates, known : (k, f).
+
+    >>> choose_apart(np.array([1.0, 3.0, 2.9]), np.array([[0.0], [1.0], [1.1]]), np.array([[5.0]]), 2, 0.5)
+    [1, 0]
+    """
+    chosen: list[int] = []
+    for number in np.argsort(-gains, kind="stable"):
+        if len(chosen) == count:
+            break
+        if np.linalg.norm(known - places[number], axis=1).min() > apart:
+            chosen.append(int(number))
+            known = np.vstack([known, places[number]])
+    return chosen
+
+
 def rounded_values(axes: Sequence[Axis], shares: Floats) -> tuple[Any, ...]:
     """Values at shares (d,) of the axes, numbers between low and high to two digits, as one would make them."""
     return tuple(
@@ -97,11 +121,11 @@ def expected_gain(axes: Sequence[Axis], known: Floats, forces_N: Sequence[float 
     """Expected improvement (m,) of the logarithm of the least force at shares wanted (m, d) by that at known (n, d)."""
     largest = FAILURE_FACTOR * max(force for force in forces_N if force is not None)
     target = np.log([largest if force is None else force for force in forces_N])
-    process = fit_process(_features(axes, known), target, LENGTH_RANGE, HALVING_VARIANCE)
-    mean, deviation_of = process.predict(_features(axes, wanted), return_std=True)
-    below = target.min() - mean
-    score = below / deviation_of
-    return np.asarray(below * norm.cdf(score) + deviation_of * norm.pdf(score))
+    process = GradientProcess(_features(axes, known), target[:, None], None, prior=PRIOR)
+    features = _features(axes, wanted)
+    below, deviation = target.min() - process.mean(features)[:, 0], process.deviation(features)[:, 0]
+    score = below / np.maximum(deviation, 1e-12)
+    return np.asarray(below * norm.cdf(score) + deviation * norm.pdf(score))
 
 
 def pareto(values: Floats) -> Bools:

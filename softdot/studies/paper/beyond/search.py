@@ -7,8 +7,8 @@ import numpy as np
 
 from foundation.arrays import Floats
 from foundation.executor import Executor
-from softdot.bayesian_search import choose_apart, steps_beside
 from softdot.progress import Progress
+from softdot.reading.designs.search import choose_apart, steps_beside
 from softdot.studies.paper.beyond.designs import FILMS_UM, PAPERS, Design, coordinates, design_at, sample
 from softdot.studies.paper.beyond.predictors import film
 from softdot.studies.paper.beyond.surrogate import Surrogate

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from foundation.arrays import Floats
-from softdot.bayesian_search import fit_process
+from softdot.families.gradient_process import GradientProcess, Prior
 from softdot.studies.paper.beyond.designs import Design, coordinates
 from softdot.studies.paper.beyond.predictors import clamped_voltage_V, columns, free_voltage_V
 from softdot.studies.paper.beyond.trials import DesignPress, DesignTrial
@@ -14,9 +14,8 @@ from softdot.studies.paper.beyond.trials import DesignPress, DesignTrial
 LEAST_V = 0.01
 """Voltages below are taken as this one, so that there is a logarithm; nobody wants such a design."""
 OUTPUTS = 3
-LENGTH, NOISE = (1.0, 3.0, 30.0), 2e-3
-"""Over which the deviation from the trend changes, in standard deviations of the features: least, guess, largest.
-Variance of what another mesh changes, over that between designs."""
+PRIOR = Prior(power=1, length=(1.0, 3.0, 30.0), trend=(1e-3, 1.0, 1e4), noise=(1e-6, 1e-2, 1e2))
+"""Of features in standard deviations: a linear trend, and noise, which is what another mesh changes."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +28,7 @@ class Guess:
 
 
 class Surrogate:
-    """One Gaussian process for the logarithm of each number of a press.
+    """A Gaussian process for each boundary, of the logarithms of the numbers of a press.
 
     Its features are the logarithms of the variables and of the two voltages by the corrected parameters: where
     there are few designs yet, those parameters carry the trend.
@@ -41,19 +40,15 @@ class Surrogate:
         self.middle, self.spread = features.mean(axis=0), features.std(axis=0)
         places = (features - self.middle) / self.spread
         presses = [[trial.presses[side] for trial in trials] for side in (0, 1)]
-        self.processes = [
-            [fit_process(places, target, LENGTH, NOISE) for target in np.log(_numbers(side)).T] for side in presses
-        ]
+        self.processes = [GradientProcess(places, np.log(_numbers(side)), None, prior=PRIOR) for side in presses]
 
     def draw(self, designs: Sequence[Design], draws: int, seed: int) -> Guess:
         """Independent draws for each number; the same seed draws the same luck for every design."""
         luck = np.random.default_rng(seed).standard_normal((2, OUTPUTS, draws, 1))
         features = (self._features(designs) - self.middle) / self.spread
-        found = np.empty((2, OUTPUTS, draws, len(designs)))
-        for side, processes in enumerate(self.processes):
-            for output, process in enumerate(processes):
-                mean, deviation = process.predict(features, return_std=True)
-                found[side, output] = np.exp(mean + luck[side, output] * deviation)
+        told = [(process.mean(features), process.deviation(features)) for process in self.processes]
+        mean, deviation = np.array(told).transpose(1, 0, 3, 2)[:, :, :, None]  # (boundaries, outputs, 1, n)
+        found = np.exp(mean + luck * deviation)
         return Guess(found[:, 0], found[:, 1], found[:, 2])
 
     def _features(self, designs: Sequence[Design]) -> Floats:
