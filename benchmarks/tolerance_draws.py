@@ -18,13 +18,12 @@ from foundation.arrays import Floats
 from foundation.executor import Executor
 from softdot.config.loading import load_config
 from softdot.config.schema import Config
-from softdot.differentiation import value_of, with_changes
+from softdot.differentiation import value_of
 from softdot.executors import executor_for
 from softdot.tolerances import budget as budgets
-from softdot.tolerances.draws import SHARES, BoxProcess, LinearResponse, ToleranceBox, box_questions
+from softdot.tolerances.draws import SHARES, BoxProcess, ToleranceBox, box_questions
 from softdot.tolerances.factors import with_factors
-from softdot.tolerances.questions import Question, answer_all
-from softdot.tolerances.responses import coarser_press
+from softdot.tolerances.questions import Question, answer_all, coarser_press
 from softdot.tolerances.tolerances import tolerances
 
 SEED = 4711
@@ -41,7 +40,7 @@ def box_process(config: Config, box: ToleranceBox, executor: Executor) -> BoxPro
     fine, coarse = (coarser_press(config, factor) for factor in (budgets.MESH_FACTOR, budgets.CHECK_FACTOR))
     keys = tuple(sorted({key for row in tolerances(config) for key in row.slopes}))
     asked = {"fine": Question(fine, keys), "coarse": Question(coarse, keys), **box_questions(coarse, box, keys)}
-    finer, *coarser = (LinearResponse(*one) for one in answer_all(asked, executor, lambda *_: None).values())
+    finer, *coarser = answer_all(asked, executor, lambda *_: None).values()
     return BoxProcess(box, finer, coarser)
 
 
@@ -52,14 +51,14 @@ def main(config_path: Path, count: int) -> None:
     factored = with_factors(own)
     box = ToleranceBox.of(tolerances(config), lambda key: value_of(factored, key))
     places = np.random.default_rng(SEED).uniform(-1.0, 1.0, (count, len(box.rows)))
-    asked = {str(n): Question(own, (), with_changes(factored, box.changes(place))) for n, place in enumerate(places)}
+    asked = {str(n): Question(own, changes=box.changes(place)) for n, place in enumerate(places)}
     with executor_for() as executor, patch.object(budgets, "shifts", lambda _: []):
         budget = budgets.tolerance_budget(config, executor=executor)
         pressed = answer_all(asked, executor, lambda done, all_, _: print(f"{done} of {all_}", end="\r", flush=True))
         process = box_process(config, box, executor)
     answered = np.exp(process.logs(places))
     for part, name in enumerate(("force_N", "voltage_V")):
-        found = np.abs([pressed[key][part] for key in asked])
+        found = np.abs([pressed[key].nominal[part] for key in asked])
         for share in SHARES:
             full, ours = np.quantile(found, share), np.quantile(answered[:, part], share)
             print(

@@ -30,6 +30,10 @@ class Prior(NamedTuple):
     slope_noise: tuple[float, float, float] = (1e-9, 1e-5, 1e-1)
 
 
+SMOOTH = Prior()
+"""Of presses on one mesh, at places from -1 to 1."""
+
+
 class Prediction(NamedTuple):
     """Mean and standard deviation (q, m) of every output, and slopes (q, d, m) of the mean by the place."""
 
@@ -79,7 +83,7 @@ class GradientProcess:
         slopes: Floats | None,
         scales: Scales | None = None,
         start: Scales | None = None,
-        prior: Prior = Prior(),
+        prior: Prior = SMOOTH,
     ) -> None:
         self.places, self.prior, self.with_slopes = places, prior, slopes is not None
         self._middle = values.mean(axis=0)

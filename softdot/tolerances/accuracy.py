@@ -19,7 +19,7 @@ from softdot.tolerances.discretisation import (
     follows_path,
     full_load,
 )
-from softdot.tolerances.responses import kept_on_disk
+from softdot.tolerances.questions import kept_on_disk
 from solve.solution.full_load import StoppedShortError
 from solve.solution.linear import LinearSolveError
 

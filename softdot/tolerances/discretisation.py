@@ -19,7 +19,7 @@ from softdot.config.model import model_of
 from softdot.config.schema import Config
 from softdot.prepared_press import PreparedPress
 from softdot.summary import history, not_finite
-from softdot.tolerances.responses import FullLoadResponse, KitPress, kept_on_disk, with_larger_elements
+from softdot.tolerances.questions import Answer, Question, kept_on_disk, with_larger_elements
 from solve.solution.full_load import StoppedShortError
 
 SIZE_RATIOS = 2.0, 3.0
@@ -78,7 +78,7 @@ def _answers_of_press(config: Config) -> Answers:
     return found
 
 
-def full_load(config: Config, ratio: float, keys: Sequence[str] = ()) -> FullLoadResponse:
+def full_load(config: Config, ratio: float, keys: Sequence[str] = ()) -> Answer:
     """The press at its full load alone on larger elements, and its derivatives by keys; kept on disk.
 
     In one load step: where the path does not matter, the steps do not either. InputError also where it does;
@@ -86,13 +86,13 @@ def full_load(config: Config, ratio: float, keys: Sequence[str] = ()) -> FullLoa
     """
     larger = with_larger_elements(config, ratio)
     at_once = larger.press.model_copy(update={"load_steps": 1})
-    return KitPress(larger.model_copy(update={"press": at_once})).full_load(keys)
+    question = Question(larger.model_copy(update={"press": at_once}), tuple(keys), is_full_load=True)
+    return question.kept_answer()
 
 
-def answers_at_full_load(load: FullLoadResponse) -> Answers:
+def answers_at_full_load(load: Answer) -> Answers:
     """The response at full load as answers of one step."""
-    nominal = load.nominal
-    return Answers(*(np.array([one]) for one in (nominal.force, nominal.voltage, load.electrode_voltages_V)))
+    return Answers(*(np.array([one]) for one in (*load.nominal, load.electrodes_V[""])))
 
 
 def discretisation_error(fine: Answers, larger: Mapping[float, Answers]) -> DiscretisationError:

@@ -6,9 +6,9 @@ process in logarithms holds them, corrected to value and slopes of the finer mes
 at both ends alone enters by the parabola through these.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from scipy.stats import qmc
@@ -19,8 +19,7 @@ from softdot.config.schema import Config
 from softdot.differentiation import with_changes
 from softdot.families.gradient_process import GradientProcess
 from softdot.tolerances.factors import with_factors
-from softdot.tolerances.questions import Question
-from softdot.tolerances.responses import Response, path_matters
+from softdot.tolerances.questions import Answer, Question, Response, path_matters
 from softdot.tolerances.tolerances import Tolerance
 
 DRAWS, SEED = 10_000, 0
@@ -30,13 +29,6 @@ LARGEST_CHANGE = 0.9
 """Relative change beyond which a quantity has no useful logarithm."""
 SHARES = (0.05, 0.5, 0.95)
 """Shares of the draws that lie below what is told."""
-
-
-class LinearResponse(NamedTuple):
-    """A response and its derivatives by key."""
-
-    nominal: Response
-    slopes: Mapping[str, Response]
 
 
 @dataclass(frozen=True)
@@ -56,7 +48,7 @@ class ToleranceBox:
         counted = tuple(row for row in rows if row.counted)
         random = np.random.default_rng(SEED)
         spread = qmc.LatinHypercube(len(counted), seed=random, optimization="random-cd").random(PLACES)
-        shares = [[row.plus_minus * slope / value(key) for key, slope in row.slopes.items()] for row in counted]
+        shares = [[change / value(key) for key, change in row.changes(1.0).items()] for row in counted]
         relative = np.array([max(one, key=abs) for one in shares])
         return cls(counted, np.vstack([np.zeros(len(counted)), 2.0 * spread - 1.0]), relative)
 
@@ -68,21 +60,15 @@ class ToleranceBox:
         """Change of each key at a place (r,)."""
         found: dict[str, float] = {}
         for at, row in zip(place, self.rows, strict=True):
-            for key, slope in row.slopes.items():
-                found[key] = found.get(key, 0.0) + float(at) * row.plus_minus * slope
+            for key, change in row.changes(float(at)).items():
+                found[key] = found.get(key, 0.0) + change
         return found
 
-    def along(self, found: LinearResponse) -> tuple[Floats, Floats]:
+    def along(self, found: Answer) -> tuple[Floats, Floats]:
         """Logarithms (2,) of force and voltage, and their slopes (r, 2) along the rows, over plus or minus."""
         size = np.abs(np.array(found.nominal))
-        rows = [
-            [
-                row.plus_minus * sum(slope * found.slopes[key][part] for key, slope in row.slopes.items())
-                for part in (0, 1)
-            ]
-            for row in self.rows
-        ]
-        return np.log(size), np.array(rows) / (size * np.sign(found.nominal))
+        slopes = np.array([row.effect(found.slopes) for row in self.rows])
+        return np.log(size), slopes / (size * np.sign(found.nominal))
 
 
 def box_questions(config: Config, box: ToleranceBox, keys: tuple[str, ...]) -> dict[str, Question]:
@@ -95,10 +81,12 @@ def box_questions(config: Config, box: ToleranceBox, keys: tuple[str, ...]) -> d
     if path_matters(factored) or np.abs(box.relative).max(initial=0.0) > LARGEST_CHANGE:
         return {}
     try:
-        moved = [with_changes(factored, box.changes(place)) for place in box.places[1:]]
+        for place in box.places:
+            with_changes(factored, box.changes(place))
     except InputError:
         return {}
-    return {f"all off at once, {number}": Question(config, keys, one) for number, one in enumerate(moved, 1)}
+    places = enumerate(box.places[1:], 1)
+    return {f"all off at once, {number}": Question(config, keys, box.changes(place)) for number, place in places}
 
 
 class BoxProcess:
@@ -107,7 +95,7 @@ class BoxProcess:
     finer : at the nominal design. coarser : at the places of the box.
     """
 
-    def __init__(self, box: ToleranceBox, finer: LinearResponse, coarser: Sequence[LinearResponse]) -> None:
+    def __init__(self, box: ToleranceBox, finer: Answer, coarser: Sequence[Answer]) -> None:
         self._box = box
         values, slopes = (np.array(part) for part in zip(*map(box.along, coarser), strict=True))
         bent = slopes * (1.0 + box.relative * box.places)[:, :, None]
@@ -128,8 +116,8 @@ class BoxProcess:
 
 def drawn(
     box: ToleranceBox,
-    finer: LinearResponse,
-    coarser: Sequence[LinearResponse],
+    finer: Answer,
+    coarser: Sequence[Answer],
     ends: Sequence[tuple[Response, Response]],
     draws: int = DRAWS,
 ) -> dict[str, Any] | None:

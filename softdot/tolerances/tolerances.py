@@ -1,12 +1,15 @@
 """The tolerances of a segment: one row for each quantity that may be off."""
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
 from typing import Any
 
+import numpy as np
+
+from foundation.arrays import Floats
 from geometry.dot_size import dot_size, dot_size_from_base, dot_standard
 from geometry.fabrication.parameters import cast_components, sheet_components
 from geometry.parameters import SIZED_DOTS, Dot, Segment
@@ -18,8 +21,6 @@ LAYER_NAMES = {"medium1": "medium 1", "medium2": "medium 2"}
 """Layer -> its name in the budget."""
 DIFFERENCE_STEP_MM = 1e-6
 """Step of the central differences of a dot's radius."""
-
-
 PERMITTIVITY_ROW = "permittivity of the film"
 """The constant that moves the voltage V = Q / C and not the charge."""
 
@@ -29,8 +30,8 @@ class Tolerance:
     """A quantity and how far it may be off.
 
     nominal, plus_minus : in unit; unit "%" is of the nominal value, which is then None. slopes : key of the
-    configuration -> change of that key per unit of the quantity. counted : False where another row holds the same
-    error. note : a remark for the reader.
+    configuration with factors -> change of that key per unit of the quantity. counted : False where another row holds
+    the same error. note : a remark for the reader.
     """
 
     label: str
@@ -42,6 +43,15 @@ class Tolerance:
     slopes: Mapping[str, float] = field(default_factory=dict)
     counted: bool = True
     note: str = ""
+
+    def changes(self, share: float) -> dict[str, float]:
+        """Change of each key where the quantity is off by a share of its plus or minus."""
+        return {key: share * self.plus_minus * slope for key, slope in self.slopes.items()}
+
+    def effect(self, by_key: Mapping[str, Sequence[float]]) -> Floats:
+        """Change (q,) of quantities at the upper end, to first order. by_key : their derivatives (q,) by each key."""
+        parts = [slope * np.array(by_key[key]) for key, slope in self.slopes.items()]
+        return np.asarray(self.plus_minus * sum(parts))
 
 
 def tolerances(config: Config) -> list[Tolerance]:
@@ -62,33 +72,28 @@ def material_tolerances(config: Config) -> list[Tolerance]:
     return [*_moduli(config, {}), *_film(config)]
 
 
-def shifts(config: Config) -> list[tuple[Tolerance, Config, Config]]:
-    """Quantities whose effect has no useful derivative, each with the configuration at its upper and lower end.
+def shifts(config: Config) -> list[Tolerance]:
+    """Quantities whose effect has no useful derivative, and is found by presses at both ends.
 
-    Their effect vanishes to first order by symmetry, or the edges of electrodes would pass whole points of the mesh.
+    It vanishes to first order by symmetry, or the edges of electrodes would pass whole points of the mesh.
     """
-    found = placement_shifts(config)
-    for row in _footprint(config.segment) if config.segment.film.electrodes else []:
-        ((key, _),) = row.slopes.items()
-        found.append(
-            (row, _with_other_size(config, key, row.plus_minus), _with_other_size(config, key, -row.plus_minus))
-        )
-    return found
+    return [*placement_shifts(config), *(_footprint(config.segment) if config.segment.film.electrodes else [])]
 
 
-def placement_shifts(config: Config) -> list[tuple[Tolerance, Config, Config]]:
+def placement_shifts(config: Config) -> list[Tolerance]:
     """Those of shifts that move the dot or turn the film, and change no size."""
     offset, angle = table()["dot"]["offset"], table()["film"]["draw_angle"]
     axes = (0,) if config.segment.section == "plane-strain" else (0, 1)
-    found = []
-    for axis in () if config.dot.shape == "plate" else axes:
-        nominal = config.dot.offset_mm[axis]
-        row = _row(f"dot offset in {'xy'[axis]}", nominal, offset["mm"], "mm", offset)
-        found.append((row, _with_moved_dot(config, axis, offset["mm"]), _with_moved_dot(config, axis, -offset["mm"])))
-    film = config.segment.film
-    row = _row("draw direction of the film", film.draw_angle_deg, angle["deg"], "°", angle)
-    found.append((row, _with_turned_film(config, angle["deg"]), _with_turned_film(config, -angle["deg"])))
-    return found
+    found = [
+        _row(
+            f"dot offset in {'xy'[axis]}", config.dot.offset_mm[axis], offset["mm"], "mm", offset,
+            {f"dot.offset_mm[{axis}]": 1.0},
+        )
+        for axis in (() if config.dot.shape == "plate" else axes)
+    ]  # fmt: skip
+    turned = {"segment.film.draw_angle_deg": 1.0}
+    nominal = config.segment.film.draw_angle_deg
+    return [*found, _row("draw direction of the film", nominal, angle["deg"], "°", angle, turned)]
 
 
 @cache
@@ -259,28 +264,3 @@ def _interfaces(config: Config) -> list[Tolerance]:
 
 def _layer_name(layer: Layer) -> str:
     return LAYER_NAMES.get(layer.name, f"the {layer.name}")
-
-
-def _with_moved_dot(config: Config, axis: int, by_mm: float) -> Config:
-    """The configuration with its dot moved along x (axis 0) or y (axis 1)."""
-    place = list(config.dot.offset_mm)
-    place[axis] += by_mm
-    return config.model_copy(update={"dot": _with_changes(config.dot, offset_mm=tuple(place))})
-
-
-def _with_turned_film(config: Config, by_deg: float) -> Config:
-    """The configuration with the draw direction of its film turned."""
-    film = config.segment.film
-    film = _with_changes(film, draw_angle_deg=film.draw_angle_deg + by_deg)
-    return config.model_copy(update={"segment": _with_changes(config.segment, film=film)})
-
-
-def _with_other_size(config: Config, key: str, by_mm: float) -> Config:
-    """The configuration with another length or width of the segment."""
-    name = key.removeprefix("segment.")
-    segment = _with_changes(config.segment, **{name: getattr(config.segment, name) + by_mm})
-    return config.model_copy(update={"segment": segment})
-
-
-def _with_changes(model: Any, **changes: Any) -> Any:
-    return model.model_copy(update=changes)

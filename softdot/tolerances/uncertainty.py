@@ -12,6 +12,8 @@ from contextlib import suppress
 from math import hypot
 from typing import Any, TypeVar
 
+import numpy as np
+
 from foundation.errors import InputError
 from mesh.types import MeshingError
 from softdot.config.schema import Config
@@ -26,7 +28,7 @@ from softdot.tolerances.discretisation import (
     follows_path,
     full_load,
 )
-from softdot.tolerances.responses import Response
+from softdot.tolerances.questions import Answer
 from softdot.tolerances.tolerances import Tolerance, material_tolerances
 from solve.solution.full_load import StoppedShortError
 from solve.solution.linear import LinearSolveError
@@ -78,7 +80,7 @@ def _error_table(error: DiscretisationError, percent: tuple[float, float], elect
 def _estimate_parts(config: Config, given: bool) -> tuple[list[dict[str, Any]], dict[float, Answers], str | None]:
     """Shares of the materials, largest on the voltage first; answers on larger elements; a note on what is missing.
 
-    Raises any of UNSOLVED.
+    Raises any of PRESS_ERRORS.
     """
     if follows_path(config):
         larger = _pressed_on_larger_elements(lambda ratio: along_path(config, ratio))
@@ -86,8 +88,7 @@ def _estimate_parts(config: Config, given: bool) -> tuple[list[dict[str, Any]], 
     rows = [row for row in material_tolerances(config) if row.counted]
     keys = sorted({key for row in rows for key in row.slopes})
     loads = _pressed_on_larger_elements(lambda ratio: full_load(config, ratio, keys if ratio == SIZE_RATIOS[0] else ()))
-    nominal, _, slopes = loads[SIZE_RATIOS[0]]
-    parts = [_material_part(row, nominal, slopes, given) for row in rows]
+    parts = [_material_part(row, loads[SIZE_RATIOS[0]], given) for row in rows]
     larger = {ratio: answers_at_full_load(load) for ratio, load in loads.items()}
     return sorted(parts, key=lambda part: -part["voltage_percent"]), larger, None
 
@@ -96,7 +97,7 @@ Found = TypeVar("Found")
 
 
 def _pressed_on_larger_elements(press: Callable[[float], Found]) -> dict[float, Found]:
-    """Ratio of sizes -> result of press there; only that of the first ratio must succeed. Raises any of UNSOLVED."""
+    """Ratio of sizes -> result of press there; only that of the first one must succeed. Raises any of PRESS_ERRORS."""
     found = {SIZE_RATIOS[0]: press(SIZE_RATIOS[0])}
     for ratio in SIZE_RATIOS[1:]:
         with suppress(*PRESS_ERRORS):
@@ -120,17 +121,11 @@ def _root_sum_square(parts: Sequence[Mapping[str, Any]]) -> dict[str, float]:
     return {name: hypot(*(part[name] for part in parts)) for name in ("force_percent", "voltage_percent")}
 
 
-def _material_part(row: Tolerance, nominal: Response, slopes: Mapping[str, Response], given: bool) -> dict[str, Any]:
+def _material_part(row: Tolerance, answer: Answer, given: bool) -> dict[str, Any]:
     """The part of one constant of a material, at the end of its tolerance."""
-    force = sum(slope * slopes[key].force for key, slope in row.slopes.items())
-    voltage = sum(slope * slopes[key].voltage for key, slope in row.slopes.items())
-    percent = (
-        100 * row.plus_minus * abs(force / nominal.force),
-        100 * row.plus_minus * abs(voltage / nominal.voltage),
-    )
-    return _part_table(
-        f"{row.label} ±{row.plus_minus:.3g} {row.unit}", row.source, _without_given_force(percent, given)
-    )
+    force, voltage = 100.0 * np.abs(row.effect(answer.slopes) / np.array(answer.nominal))
+    percent = _without_given_force((float(force), float(voltage)), given)
+    return _part_table(f"{row.label} ±{row.plus_minus:.3g} {row.unit}", row.source, percent)
 
 
 def _part_table(name: str, source: str, percent: tuple[float, float]) -> dict[str, Any]:

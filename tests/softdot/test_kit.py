@@ -13,7 +13,7 @@ import trimesh
 from softdot.cli import main
 from softdot.kit import folder as make
 from softdot.tolerances.budget import Budget, Effect
-from softdot.tolerances.responses import Response
+from softdot.tolerances.questions import Response
 from softdot.tolerances.tolerances import Tolerance
 from solve.solution.full_load import StoppedShortError
 from solve.solution.linear import LinearSolveError

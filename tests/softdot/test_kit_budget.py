@@ -4,19 +4,20 @@ import pytest
 
 from foundation.executor import HERE
 from softdot.config.loading import config_from
+from softdot.differentiation import with_changes
+from softdot.prepared_press import PreparedPress
 from softdot.tolerances import budget as budgets
-from softdot.tolerances import questions
 from softdot.tolerances.budget import tolerance_budget
 from softdot.tolerances.draws import ToleranceBox, box_questions
 from softdot.tolerances.factors import FACTORS, factor_key, with_factors
-from softdot.tolerances.responses import (
-    KitPress,
+from softdot.tolerances.questions import (
+    Answer,
+    Question,
     Response,
+    answer_all,
+    answer_along,
     coarser_press,
     path_matters,
-    slopes_along,
-    solved_mesh,
-    value_along,
 )
 from softdot.tolerances.tolerances import Tolerance, shifts, tolerances
 from solve.solution.full_load import StoppedShortError
@@ -40,17 +41,9 @@ def config():
 
 
 @pytest.fixture(scope="module")
-def pressed(config, tmp_path_factory):
-    """One press on one coarse mesh, nothing remembered from earlier."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SOFTDOT_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield KitPress(config)
-
-
-@pytest.fixture(scope="module")
-def solved(config, pressed):
+def solved(config):
     """Response and its derivative by every key of the budget."""
-    return pressed.slopes(sorted({key for row in tolerances(config) for key in row.slopes}))
+    return Question(config, tuple(sorted({key for row in tolerances(config) for key in row.slopes}))).answer()[:2]
 
 
 def total(found, terms):
@@ -63,16 +56,17 @@ def test_full_load_has_the_derivatives_of_the_whole_press(config, solved):
     """Without memory the way there does not matter; differentiated along it, the press gives the same."""
     nominal, found = solved
     keys = [factor_key(config, "medium1", "modulus_factor"), "press.indentation_mm"]
-    along, by_key = slopes_along(with_factors(config), keys, solved_mesh(config))
+    along, by_key, _ = answer_along(with_factors(config), keys, PreparedPress(config).solved_mesh)
     assert nominal == pytest.approx(along, rel=1e-6)
     for key in keys:
         assert found[key] == pytest.approx(by_key[key], rel=1e-5)
 
 
-def test_a_press_beside_is_the_whole_press(config, pressed):
+def test_a_press_beside_is_the_whole_press(config):
     """A dot that is 0.05 mm off, from the state of the one that is not, against a press of its own."""
-    moved = shifts(config)[0][1]
-    assert pressed.value(moved) == pytest.approx(value_along(moved, solved_mesh(config)), rel=1e-6)
+    off = shifts(config)[0].changes(1.0)
+    whole = answer_along(with_changes(config, off), (), PreparedPress(config).solved_mesh)
+    assert Question(config, changes=off).answer().nominal == pytest.approx(whole.nominal, rel=1e-6)
 
 
 @for_each(
@@ -111,16 +105,16 @@ def test_voltage_is_charge_over_permittivity(config, solved):
     assert 12.0 * by_permittivity.voltage == pytest.approx(-nominal.voltage, rel=1e-6)
 
 
-def test_a_higher_dot_is_flatter_less_and_deeper(config, pressed, solved):
+def test_a_higher_dot_is_flatter_less_and_deeper(config, solved):
     """The row of the dot's height against two presses with dots of 1.5 mm base that stop at the same plate."""
     _, found = solved
     row = next(row for row in tolerances(config) if row.label == "height of the dot")
     change = 0.002
+    sized = config_from({**TABLES, "dot": {"base_diameter_mm": 1.5, "height_mm": 0.5}})
     ends = []
     for sign in (1.0, -1.0):
-        tables = {**TABLES, "dot": {"base_diameter_mm": 1.5, "height_mm": 0.5 + sign * change}}
-        moved = config_from({**tables, "press": {"indentation_mm": 0.1 + sign * change, "load_steps": 2}})
-        ends.append(pressed.value(moved))
+        higher = {"dot.height_mm": sign * change, "press.indentation_mm": sign * change}
+        ends.append(Question(sized, changes=higher).answer().nominal)
     by_difference = [(up - down) / (2 * change) for up, down in zip(*ends, strict=True)]
     assert total(found, row.slopes) == pytest.approx(by_difference, rel=0.01)
 
@@ -178,9 +172,9 @@ def test_every_key_of_the_budget_exists(config):
     for row in tolerances(config):
         assert row.plus_minus > 0.0
         assert row.confidence in ("high", "medium", "low")
-    for row, above, below in shifts(config):
-        assert above != below != config
+    for row in shifts(config):
         assert row.plus_minus > 0.0
+        assert with_changes(config, row.changes(1.0)) != with_changes(config, row.changes(-1.0)) != config
 
 
 def test_edges_of_electrodes_are_not_differentiated():
@@ -189,7 +183,9 @@ def test_edges_of_electrodes_are_not_differentiated():
     film = {"thickness_um": 28.0, "electrodes": [electrode]}
     config = config_from({**TABLES, "segment": {**TABLES["segment"], "film": film}})
     assert not [row for row in tolerances(config) if row.label.endswith("of the segment")]
-    ends = {row.label: (above.segment, below.segment) for row, above, below in shifts(config)}
+    ends = {
+        row.label: [with_changes(config, row.changes(share)).segment for share in (1.0, -1.0)] for row in shifts(config)
+    }
     assert [one.width_mm for one in ends["width of the segment"]] == pytest.approx([2.6, 2.4])
     assert [one.length_mm for one in ends["length of the segment"]] == pytest.approx([2.6, 2.4])
 
@@ -204,33 +200,28 @@ def budget(config, monkeypatch, tmp_path):
     """A budget of made-up responses: 1 N and 10 V; each key changes both by its place in the alphabet."""
     ends = iter([Response(1.0, 9.0), Response(1.0, 10.5)] * 3)
 
-    class MadeUp(KitPress):
-        def slopes(self, keys):
-            return Response(1.0, 10.0), {k: Response(0.01 * n, 0.1 * n) for n, k in enumerate(keys)}
-
-        def slopes_at(self, moved, keys):
-            return self.slopes(keys)
-
-        def value(self, moved):
-            return next(ends)
+    def made_up(question):
+        slopes = {key: Response(0.01 * n, 0.1 * n) for n, key in enumerate(question.keys)}
+        return Answer(Response(1.0, 10.0) if question.keys else next(ends), slopes)
 
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
-    monkeypatch.setattr(questions, "KitPress", MadeUp)
+    monkeypatch.setattr(Question, "answer", made_up)
     return tolerance_budget(config)
 
 
 def test_a_budget_stands_without_the_press_of_all_off_at_once(config, budget, monkeypatch, tmp_path):
     """Where one of these stops short, and where a quantity may vanish, so that it has no logarithm."""
 
-    def stops(*_):
-        raise StoppedShortError("too far")
+    def stops(question):
+        if question.keys and question.changes:
+            raise StoppedShortError("too far")
+        return Answer(Response(1.0, 9.0), dict.fromkeys(question.keys, Response(0.01, 0.1)))
 
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path / "other"))
-    monkeypatch.setattr(questions.KitPress, "slopes_at", stops)
-    monkeypatch.setattr(questions.KitPress, "value", lambda *_: Response(1.0, 9.0))
-    asked = {"all off at once, 1": questions.Question(config, ("press.indentation_mm",), config)}
+    monkeypatch.setattr(Question, "answer", stops)
+    asked = {"all off at once, 1": Question(config, ("press.indentation_mm",), {"press.indentation_mm": 0.01})}
     with pytest.raises(StoppedShortError):
-        questions.answer_all(asked, HERE, lambda *_: None)
+        answer_all(asked, HERE, lambda *_: None)
     monkeypatch.setattr(budgets, "box_questions", lambda *_: asked)
     without = tolerance_budget(config)
     assert without.drawn is None
@@ -240,12 +231,12 @@ def test_a_budget_stands_without_the_press_of_all_off_at_once(config, budget, mo
 
 
 def test_largest_effect_on_the_voltage_comes_first(budget):
-    sizes = [abs(effect.change.voltage) for effect in budget.effects]
+    sizes = [abs(effect.change[1]) for effect in budget.effects]
     assert sizes == sorted(sizes, reverse=True)
 
 
 def test_total_is_the_root_of_the_counted_squares(budget):
-    counted = [effect.change.voltage for effect in budget.effects if effect.tolerance.counted]
+    counted = [effect.change[1] for effect in budget.effects if effect.tolerance.counted]
     assert len(counted) == len(budget.effects) - 1
     assert budget.total.voltage == pytest.approx(sum(change**2 for change in counted) ** 0.5)
 
@@ -253,8 +244,8 @@ def test_total_is_the_root_of_the_counted_squares(budget):
 def test_a_shift_shows_its_worse_end_and_their_difference(budget):
     """At 9.0 and 10.5 V around 10 V the change is -1 V; being opposite fails by 0.25 V on either side."""
     effect = next(effect for effect in budget.effects if effect.method == "both ends")
-    assert effect.change.voltage == -1.0
-    assert effect.mesh_error.voltage == 0.25
+    assert effect.change[1] == -1.0
+    assert effect.mesh_error[1] == 0.25
 
 
 def test_percentages_are_of_the_nominal_response(budget):

@@ -5,7 +5,7 @@ import pytest
 from softdot.case import Case
 from softdot.config.loading import config_from
 from softdot.summary import press_part
-from softdot.tolerances.responses import KitPress
+from softdot.tolerances.questions import Question
 from softdot.tolerances.uncertainty import uncertainty
 from solve.solution.full_load import StoppedShortError
 from tests.cases import for_each
@@ -119,7 +119,7 @@ def test_a_force_that_is_given_is_not_in_doubt(slide):
 
 def test_no_derivative_is_taken_that_no_part_needs(monkeypatch):
     asked = []
-    monkeypatch.setattr(KitPress, "full_load", lambda _, keys: asked.extend(keys) or stop())
+    monkeypatch.setattr(Question, "kept_answer", lambda question: asked.extend(question.keys) or stop())
     found = uncertainty(config_from(SLICE), told())
     assert len(asked) == 6  # four moduli, d31 and permittivity
     assert not any("thickness" in key for key in asked)

@@ -11,7 +11,7 @@ from softdot.studio.work.design import case_of
 from softdot.studio.work.press import COARSE, TaskProgress
 from softdot.tolerances.budget import tolerance_budget
 from softdot.tolerances.factors import FACTORS, factor_key, has_component
-from softdot.tolerances.responses import KitPress, coarser_press
+from softdot.tolerances.questions import Question, coarser_press
 from softdot.tolerances.tolerances import LAYER_NAMES
 
 LARGER = 0.1
@@ -30,7 +30,7 @@ def influences(text: str, tell: Tell) -> dict[str, Any]:
     progress.stage("derivatives")
     config = quick_press(case.config)
     keys = _keys(config)
-    nominal, slopes = KitPress(config).slopes(list(keys))
+    nominal, slopes, _ = Question(config, tuple(keys)).kept_answer()
     if nominal.force == 0.0 or nominal.voltage == 0.0:
         raise InputError("this press gives no force or no voltage, so that nothing changes it by a share")
     rows: list[dict[str, Any]] = [

@@ -20,7 +20,7 @@ from softdot.studio.estimate import QUANTITIES
 from softdot.studio.work.design import case_of, config_of, pressed_part
 from softdot.studio.work.remedies import late_remedies
 from softdot.summary import mesh_part, press_part
-from softdot.tolerances.responses import coarser_press, path_matters, with_larger_elements
+from softdot.tolerances.questions import coarser_press, path_matters, with_larger_elements
 from softdot.tolerances.tolerances import PERMITTIVITY_ROW
 from solve.result import PressResult, Step
 

@@ -9,9 +9,10 @@ from foundation.worker_process import Tell
 from softdot.config.model import model_of
 from softdot.config.schema import Config
 from softdot.differentiation import variations_of
+from softdot.prepared_press import PreparedPress
 from softdot.studio.estimate import WITHOUT_EFFECT, dotted
 from softdot.studio.work.design import case_of, pressed_part
-from softdot.tolerances.responses import MOST_LOAD_STEPS, path_matters, solved_mesh
+from softdot.tolerances.questions import MOST_LOAD_STEPS, path_matters
 from solve.solution.full_load import FullLoad
 from solve.solution.linear import LinearSolveError
 
@@ -31,7 +32,7 @@ def exponents(text: str, wanted: Sequence[str], tell: Tell) -> dict[str, Any]:
     config = config.model_copy(update={"press": config.press.model_copy(update={"load_steps": steps})})
     if path_matters(config) or config.array is not None:
         raise InputError("the answer of this press depends on its path and is not estimated")
-    full = FullLoad(model_of(config), solved_mesh(config))
+    full = FullLoad(model_of(config), PreparedPress(config).solved_mesh)
     force, voltage = full.answer.force, full.answer.voltage
     if force <= 0.0 or voltage == 0.0:
         raise InputError("this press gives no force or no voltage")
