@@ -26,7 +26,7 @@ OF_A_ROW = ("label", "nominal", "plus_minus", "unit", "source", "confidence", "c
 """What a row of a budget tells of its tolerance."""
 
 
-class Linear(Protocol):
+class BudgetAnswer(Protocol):
     """Quantities (q,) of a budget and their derivatives (q,) by key."""
 
     @property
@@ -135,7 +135,9 @@ def budget_questions(
     return {NOMINAL_QUESTION: nominal, **ends, CHECK_QUESTION: check}
 
 
-def effects_of(rows: Sequence[Tolerance], moved: Sequence[Tolerance], found: Mapping[str, Linear]) -> list[Effect]:
+def effects_of(
+    rows: Sequence[Tolerance], moved: Sequence[Tolerance], found: Mapping[str, BudgetAnswer]
+) -> list[Effect]:
     """The effects of rows and of shifts from the answers to budget_questions, the largest on the last quantity first.
 
     The quantities are those of the nominal answers, (q,).

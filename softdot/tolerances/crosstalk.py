@@ -22,11 +22,11 @@ from softdot.tolerances.budget import (
     effects_of,
     root_sum_square,
 )
-from softdot.tolerances.questions import Answer, answer_all, coarser_press
+from softdot.tolerances.questions import PressAnswer, answer_all, coarser_press
 from softdot.tolerances.tolerances import placement_shifts, tolerances
 
 
-class Crosstalk(NamedTuple):
+class CrosstalkShare(NamedTuple):
     """The largest crosstalk of a press in percent, and its derivatives by key. read : number of that electrode."""
 
     nominal: tuple[float]
@@ -34,7 +34,7 @@ class Crosstalk(NamedTuple):
     read: int
 
     @classmethod
-    def of(cls, answer: Answer, pressed: int) -> "Crosstalk":
+    def of(cls, answer: PressAnswer, pressed: int) -> "CrosstalkShare":
         """From the voltages of all electrodes, one of them pressed.
 
         With s = V_n / V_p of the electrode n that reads most beside the pressed one p, the change by a quantity is
@@ -97,7 +97,7 @@ def crosstalk_budget(
     rows, moved = tolerances(whole), placement_shifts(whole)
     answers = answer_all(budget_questions(fine, coarse, rows, moved, is_full_load=True), executor, report)
     pressed = case.layout.places.index(place)
-    found = {name: Crosstalk.of(answer, pressed) for name, answer in answers.items()}
+    found = {name: CrosstalkShare.of(answer, pressed) for name, answer in answers.items()}
     nominal, effects = found[NOMINAL_QUESTION], effects_of(rows, moved, found)
     (percent,), (coarser_percent,) = nominal.nominal, found[CHECK_QUESTION].nominal
     return CrosstalkBudget(

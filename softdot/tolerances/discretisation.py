@@ -19,7 +19,7 @@ from softdot.config.model import model_of
 from softdot.config.schema import Config
 from softdot.prepared_press import PreparedPress
 from softdot.summary import history, not_finite
-from softdot.tolerances.questions import Answer, Question, kept_on_disk, with_larger_elements
+from softdot.tolerances.questions import PressAnswer, Question, kept_on_disk, with_larger_elements
 from solve.solution.full_load import StoppedShortError
 
 SIZE_RATIOS = 2.0, 3.0
@@ -78,7 +78,7 @@ def _answers_of_press(config: Config) -> Answers:
     return found
 
 
-def full_load(config: Config, ratio: float, keys: Sequence[str] = ()) -> Answer:
+def full_load(config: Config, ratio: float, keys: Sequence[str] = ()) -> PressAnswer:
     """The press at its full load alone on larger elements, and its derivatives by keys; kept on disk.
 
     In one load step: where the path does not matter, the steps do not either. InputError also where it does;
@@ -90,7 +90,7 @@ def full_load(config: Config, ratio: float, keys: Sequence[str] = ()) -> Answer:
     return question.kept_answer()
 
 
-def answers_at_full_load(load: Answer) -> Answers:
+def answers_at_full_load(load: PressAnswer) -> Answers:
     """The response at full load as answers of one step."""
     return Answers(*(np.array([one]) for one in (*load.nominal, load.electrodes_V[""])))
 

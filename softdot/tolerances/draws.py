@@ -19,7 +19,7 @@ from softdot.config.schema import Config
 from softdot.differentiation import with_changes
 from softdot.families.gradient_process import GradientProcess
 from softdot.tolerances.factors import with_factors
-from softdot.tolerances.questions import Answer, Question, Response, path_matters
+from softdot.tolerances.questions import PressAnswer, Question, Response, path_matters
 from softdot.tolerances.tolerances import Tolerance
 
 DRAWS, SEED = 10_000, 0
@@ -64,7 +64,7 @@ class ToleranceBox:
                 found[key] = found.get(key, 0.0) + change
         return found
 
-    def along(self, found: Answer) -> tuple[Floats, Floats]:
+    def along(self, found: PressAnswer) -> tuple[Floats, Floats]:
         """Logarithms (2,) of force and voltage, and their slopes (r, 2) along the rows, over plus or minus."""
         size = np.abs(np.array(found.nominal))
         slopes = np.array([row.effect(found.slopes) for row in self.rows])
@@ -95,7 +95,7 @@ class BoxProcess:
     finer : at the nominal design. coarser : at the places of the box.
     """
 
-    def __init__(self, box: ToleranceBox, finer: Answer, coarser: Sequence[Answer]) -> None:
+    def __init__(self, box: ToleranceBox, finer: PressAnswer, coarser: Sequence[PressAnswer]) -> None:
         self._box = box
         values, slopes = (np.array(part) for part in zip(*map(box.along, coarser), strict=True))
         bent = slopes * (1.0 + box.relative * box.places)[:, :, None]
@@ -116,8 +116,8 @@ class BoxProcess:
 
 def drawn(
     box: ToleranceBox,
-    finer: Answer,
-    coarser: Sequence[Answer],
+    finer: PressAnswer,
+    coarser: Sequence[PressAnswer],
     ends: Sequence[tuple[Response, Response]],
     draws: int = DRAWS,
 ) -> dict[str, Any] | None:

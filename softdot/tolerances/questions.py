@@ -39,7 +39,7 @@ class Response(NamedTuple):
     voltage: float
 
 
-class Answer(NamedTuple):
+class PressAnswer(NamedTuple):
     """A response and its derivatives by key. electrodes_V : at full load the open-circuit voltage (e,) of each
     electrode alone under "", its derivatives under their keys.
     """
@@ -62,7 +62,7 @@ class Question:
     changes: Mapping[str, float] = field(default_factory=dict)
     is_full_load: bool = False
 
-    def answer(self) -> Answer:
+    def answer(self) -> PressAnswer:
         """The answer, calculated by the last press of this process where that fits.
 
         InputError, also for a full load where the path of the press matters; LinearSolveError, MeshingError,
@@ -77,20 +77,20 @@ class Question:
         except ValueError as error:
             raise InputError(str(error)) from None
 
-    def stored_answer(self) -> Answer | None:
+    def stored_answer(self) -> PressAnswer | None:
         """The answer to an earlier equal question, None where there was none."""
         known = recall(self._name)
         if known is None:
             return None
         nominal, slopes, electrodes_V = known
         by_key = {key: Response(*pair) for key, pair in slopes.items()}
-        return Answer(Response(*nominal), by_key, {key: tuple(each) for key, each in electrodes_V.items()})
+        return PressAnswer(Response(*nominal), by_key, {key: tuple(each) for key, each in electrodes_V.items()})
 
-    def keep(self, answer: Answer) -> None:
+    def keep(self, answer: PressAnswer) -> None:
         """Store an answer."""
         remember(self._name, plain(answer))
 
-    def kept_answer(self) -> Answer:
+    def kept_answer(self) -> PressAnswer:
         """The stored answer, or else the calculated one, then stored. Errors as in answer."""
         known = self.stored_answer()
         if known is None:
@@ -119,7 +119,7 @@ class _Pressed:
             return self._mesh
         return morphed_mesh(self._mesh, model_of(self.stated).segment, model_of(moved).segment)
 
-    def at_full_load(self, moved: Config, keys: Sequence[str]) -> Answer:
+    def at_full_load(self, moved: Config, keys: Sequence[str]) -> PressAnswer:
         """The answer of a changed configuration. ValueError, LinearSolveError, StoppedShortError."""
         if moved is not self.stated and keys:
             load = FullLoad(model_of(moved), self.moved_mesh(moved))
@@ -145,15 +145,15 @@ def _last_press(config: Config) -> _Pressed:
     return _LAST_PRESS[0]
 
 
-def _answer_of(full: FullResponse, by_key: Mapping[str, FullResponse]) -> Answer:
+def _answer_of(full: FullResponse, by_key: Mapping[str, FullResponse]) -> PressAnswer:
     electrodes = {key: tuple(map(float, one.electrode_voltages)) for key, one in {"": full, **by_key}.items()}
     slopes = {key: Response(one.force, one.voltage) for key, one in by_key.items()}
-    return Answer(Response(full.force, full.voltage), slopes, electrodes)
+    return PressAnswer(Response(full.force, full.voltage), slopes, electrodes)
 
 
 def answer_all(
     questions: Mapping[str, Question], executor: Executor, report: Callable[[int, int, str], None]
-) -> dict[str, Answer]:
+) -> dict[str, PressAnswer]:
     """The answer to each question by its name. InputError, MeshingError, LinearSolveError, StoppedShortError.
 
     report : called with the number of answers so far, their total, and the name of the last one.
@@ -187,10 +187,10 @@ def path_matters(config: Config) -> bool:
     return case.model.follows_time or case.is_amplified
 
 
-def answer_along(config: Config, keys: Sequence[str], tet_mesh: TetMesh) -> Answer:
+def answer_along(config: Config, keys: Sequence[str], tet_mesh: TetMesh) -> PressAnswer:
     """The response of a whole press on a given mesh, and its derivatives. InputError, StoppedShortError."""
     if not keys:
-        return Answer(_response(config, PreparedPress(config).solve(tet_mesh=tet_mesh)), {})
+        return PressAnswer(_response(config, PreparedPress(config).solve(tet_mesh=tet_mesh)), {})
     result, found = press_with_derivatives(config, keys, tet_mesh)
     response, step = _response(config, result), _deepest_step(result)
     at = int(np.argmin(np.abs(found[0].time_s - result.steps[step].time_s)))
@@ -198,7 +198,7 @@ def answer_along(config: Config, keys: Sequence[str], tet_mesh: TetMesh) -> Answ
     for one in found:
         voltage = one.open_circuit_voltage_V if one.readout_voltage_V is None else one.readout_voltage_V
         by_key[one.key] = Response(float(one.reaction_force_N[at]), float(voltage[at]))
-    return Answer(response, by_key)
+    return PressAnswer(response, by_key)
 
 
 def _response(config: Config, result: PressResult) -> Response:

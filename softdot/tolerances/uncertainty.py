@@ -28,7 +28,7 @@ from softdot.tolerances.discretisation import (
     follows_path,
     full_load,
 )
-from softdot.tolerances.questions import Answer
+from softdot.tolerances.questions import PressAnswer
 from softdot.tolerances.tolerances import Tolerance, material_tolerances
 from solve.solution.full_load import StoppedShortError
 from solve.solution.linear import LinearSolveError
@@ -121,7 +121,7 @@ def _root_sum_square(parts: Sequence[Mapping[str, Any]]) -> dict[str, float]:
     return {name: hypot(*(part[name] for part in parts)) for name in ("force_percent", "voltage_percent")}
 
 
-def _material_part(row: Tolerance, answer: Answer, given: bool) -> dict[str, Any]:
+def _material_part(row: Tolerance, answer: PressAnswer, given: bool) -> dict[str, Any]:
     """The part of one constant of a material, at the end of its tolerance."""
     force, voltage = 100.0 * np.abs(row.effect(answer.slopes) / np.array(answer.nominal))
     percent = _without_given_force((float(force), float(voltage)), given)

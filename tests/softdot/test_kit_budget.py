@@ -11,7 +11,7 @@ from softdot.tolerances.budget import tolerance_budget
 from softdot.tolerances.draws import ToleranceBox, box_questions
 from softdot.tolerances.factors import FACTORS, factor_key, with_factors
 from softdot.tolerances.questions import (
-    Answer,
+    PressAnswer,
     Question,
     Response,
     answer_all,
@@ -202,7 +202,7 @@ def budget(config, monkeypatch, tmp_path):
 
     def made_up(question):
         slopes = {key: Response(0.01 * n, 0.1 * n) for n, key in enumerate(question.keys)}
-        return Answer(Response(1.0, 10.0) if question.keys else next(ends), slopes)
+        return PressAnswer(Response(1.0, 10.0) if question.keys else next(ends), slopes)
 
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
     monkeypatch.setattr(Question, "answer", made_up)
@@ -215,7 +215,7 @@ def test_a_budget_stands_without_the_press_of_all_off_at_once(config, budget, mo
     def stops(question):
         if question.keys and question.changes:
             raise StoppedShortError("too far")
-        return Answer(Response(1.0, 9.0), dict.fromkeys(question.keys, Response(0.01, 0.1)))
+        return PressAnswer(Response(1.0, 9.0), dict.fromkeys(question.keys, Response(0.01, 0.1)))
 
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path / "other"))
     monkeypatch.setattr(Question, "answer", stops)

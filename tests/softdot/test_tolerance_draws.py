@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from softdot.tolerances.draws import DRAWS, ToleranceBox, drawn
-from softdot.tolerances.questions import Answer, Response
+from softdot.tolerances.questions import PressAnswer, Response
 from softdot.tolerances.tolerances import Tolerance
 
 ROWS = [
@@ -25,7 +25,7 @@ def press(changes, scale=1.0):
         "e": Response(force / e, -0.5 * voltage / e),
         "d": Response(1.5 * force / d, voltage / d),
     }
-    return Answer(Response(force, voltage), slopes)
+    return PressAnswer(Response(force, voltage), slopes)
 
 
 def test_percentiles_are_those_of_the_response_itself():
@@ -57,7 +57,7 @@ def test_the_ends_of_a_quantity_without_slopes_make_a_parabola():
 def test_a_voltage_that_changes_its_sign_is_not_drawn():
     box = ToleranceBox.of(ROWS, NOMINAL.get)
     places = [press(box.changes(place)) for place in box.places]
-    turned = Answer(Response(places[2].nominal.force, -places[2].nominal.voltage), places[2].slopes)
+    turned = PressAnswer(Response(places[2].nominal.force, -places[2].nominal.voltage), places[2].slopes)
     assert drawn(box, press({}), [*places[:2], turned, *places[3:]], []) is None
 
 

@@ -129,7 +129,7 @@ def draw_final(compared: Mapping[str, Sequence[DesignTrial]], names: Sequence[st
                 heights = [_number(trial.presses[j], name) for trial in compared[mesher]]
                 panel.bar(places, heights, 0.18, color=SIDES[side], alpha=1.0 if k == 0 else 0.55,
                           label=f"{side}, {mesher}")  # fmt: skip
-        panel.set_xticks(range(len(names)), names, fontsize=9)
+        panel.set_xticks(range(len(names)), names, fontsize=8)
         label(panel, "", words)
     panels[0].margins(y=0.5)
     panels[0].legend(frameon=False, fontsize=8, loc="upper left")
