@@ -29,11 +29,8 @@ from softdot.tolerances.accuracy import with_sizes_for_accuracy
 from softdot.tolerances.discretisation import (
     SIZE_RATIOS,
     Answers,
-    along_path,
-    answers_at_full_load,
+    answers_on_larger_elements,
     discretisation_error,
-    follows_path,
-    full_load,
 )
 from softdot.tolerances.uncertainty import PRESS_ERRORS
 
@@ -182,12 +179,8 @@ def _mesh_error(space: FamilySpace, middle: Record) -> dict[str, float] | None:
     fine = Answers(courses[FORCE], courses[VOLTAGE], courses[VOLTAGE][:, None])
     if not fine.force_N.all() or not fine.voltage_V.all():
         return None
-    config = space.centre
     try:
-        larger = {
-            ratio: along_path(config, ratio) if follows_path(config) else answers_at_full_load(full_load(config, ratio))
-            for ratio in SIZE_RATIOS
-        }
+        larger = {ratio: answers_on_larger_elements(space.centre, ratio) for ratio in SIZE_RATIOS}
     except PRESS_ERRORS:
         return None
     error = discretisation_error(fine, larger)

@@ -14,10 +14,9 @@ from softdot.config.schema import Config
 from softdot.prepared_press import PreparedPress
 from softdot.tolerances.discretisation import (
     SIZE_RATIOS,
-    answers_at_full_load,
+    answers_on_larger_elements,
     discretisation_error,
     follows_path,
-    full_load,
 )
 from softdot.tolerances.questions import kept_on_disk
 from solve.solution.full_load import StoppedShortError
@@ -81,7 +80,7 @@ def _error_percent(config: Config, factor: float) -> float:
     _refuse_too_many_elements(config, options)
     own = config.model_copy(update={"mesh": options})
     try:
-        loads = {ratio: answers_at_full_load(full_load(own, ratio)) for ratio in (1.0, *SIZE_RATIOS)}
+        loads = {ratio: answers_on_larger_elements(own, ratio) for ratio in (1.0, *SIZE_RATIOS)}
     except (LinearSolveError, StoppedShortError) as error:
         asked = config.mesh.accuracy_percent
         raise MeshingError(f"mesh.accuracy_percent = {asked:g}: a press to choose the sizes failed: {error}") from None

@@ -60,8 +60,13 @@ def follows_path(config: Config) -> bool:
     return model_of(config).follows_time or bool(config.press.path_xy_mm)
 
 
-def along_path(config: Config, ratio: float) -> Answers:
-    """The answers of a whole press on larger elements, kept on disk. InputError, MeshingError, StoppedShortError."""
+def answers_on_larger_elements(config: Config, ratio: float) -> Answers:
+    """The answers on larger elements, kept on disk: along the whole press where its path counts, else at full load.
+
+    InputError, LinearSolveError, MeshingError, StoppedShortError.
+    """
+    if not follows_path(config):
+        return answers_at_full_load(full_load(config, ratio))
     larger = with_larger_elements(config, ratio)
     return Answers(*map(np.array, kept_on_disk(larger, "answers along the path", lambda: _answers_of_press(larger))))
 

@@ -7,23 +7,22 @@ independent, and their squares added. Where a part is missing there is no sum: t
 effect of the materials.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import suppress
-from math import hypot
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
+from foundation.arrays import Floats
 from foundation.errors import InputError
 from mesh.types import MeshingError
 from softdot.config.schema import Config
 from softdot.tolerances.discretisation import (
     SIZE_RATIOS,
     Answers,
-    DiscretisationError,
-    along_path,
     answers_at_full_load,
     answers_from_summary,
+    answers_on_larger_elements,
     discretisation_error,
     follows_path,
     full_load,
@@ -53,81 +52,64 @@ def uncertainty(config: Config, summary: Mapping[str, Any]) -> dict[str, Any]:
     and voltage_percent; note says what is missing, and then there is no sum. A run whose force or voltage is zero has
     no percentages.
     """
-    found, given = answers_from_summary(summary), config.press.force_N is not None
+    found, names = answers_from_summary(summary), [one["name"] for one in summary["electrodes"]]
     if found.force_N[-1] == 0.0 or found.voltage_V[-1] == 0.0:
         return {}
     try:
-        parts, larger, note = _estimate_parts(config, given)
+        parts, larger, note = _estimate_parts(config)
     except PRESS_ERRORS:
         return {"uncertainty": {"parts": [], "note": MISSING_NOTES["failed"]}}
     error = discretisation_error(found, larger)
-    percent = _without_given_force((error.force_percent, error.voltage_percent), given)
     times = " and ".join(f"{ratio:g}" for ratio in larger)
-    parts.append(_part_table("mesh", f"the same press on elements {times} times as large", percent))
+    mesh = np.array([error.force_percent, error.voltage_percent])
+    parts.append(("mesh", f"the same press on elements {times} times as large", mesh))
+    in_doubt = np.array([config.press.force_N is None, True])  # a force that is given is not
+    each = zip(names, error.electrodes_percent, strict=True)
+    electrodes = [{"name": name, "voltage_percent": float(percent)} for name, percent in each]
+    told = [{"name": name, "source": source, **_percent_table(in_doubt * one)} for name, source, one in parts]
+    total = np.sqrt(sum((in_doubt * one) ** 2 for *_, one in parts))
     return {
-        "discretisation_error": _error_table(error, percent, [one["name"] for one in summary["electrodes"]]),
-        "uncertainty": {**(_root_sum_square(parts) if note is None else {}), "parts": parts, "note": note},
+        "discretisation_error": {**_percent_table(in_doubt * mesh), "electrodes": electrodes},
+        "uncertainty": {**(_percent_table(total) if note is None else {}), "parts": told, "note": note},
     }
 
 
-def _error_table(error: DiscretisationError, percent: tuple[float, float], electrodes: Sequence[str]) -> dict[str, Any]:
-    """The discretisation error as summary.json holds it."""
-    named = zip(electrodes, error.electrodes_percent, strict=True)
-    each = [{"name": name, "voltage_percent": float(one)} for name, one in named]
-    return {"force_percent": percent[0], "voltage_percent": percent[1], "electrodes": each}
+def _percent_table(percent: Floats) -> dict[str, float]:
+    """Percentages (2,) of force and voltage by name."""
+    return {"force_percent": float(percent[0]), "voltage_percent": float(percent[1])}
 
 
-def _estimate_parts(config: Config, given: bool) -> tuple[list[dict[str, Any]], dict[float, Answers], str | None]:
-    """Shares of the materials, largest on the voltage first; answers on larger elements; a note on what is missing.
+Part = tuple[str, str, Floats]
+"""Name and source of a part of the uncertainty, and its percentages (2,) of force and voltage."""
 
-    Raises any of PRESS_ERRORS.
+
+def _estimate_parts(config: Config) -> tuple[list[Part], dict[float, Answers], str | None]:
+    """Parts of the materials, largest on the voltage first; answers on larger elements; a note on what is missing.
+
+    Of the larger meshes only the first must succeed. Raises any of PRESS_ERRORS.
     """
+    parts, note, (first, *further) = [], None, SIZE_RATIOS
     if follows_path(config):
-        larger = _pressed_on_larger_elements(lambda ratio: along_path(config, ratio))
-        return [], larger, MISSING_NOTES["slide" if config.press.path_xy_mm else "path"]
-    rows = [row for row in material_tolerances(config) if row.counted]
-    keys = sorted({key for row in rows for key in row.slopes})
-    loads = _pressed_on_larger_elements(lambda ratio: full_load(config, ratio, keys if ratio == SIZE_RATIOS[0] else ()))
-    parts = [_material_part(row, loads[SIZE_RATIOS[0]], given) for row in rows]
-    larger = {ratio: answers_at_full_load(load) for ratio, load in loads.items()}
-    return sorted(parts, key=lambda part: -part["voltage_percent"]), larger, None
-
-
-Found = TypeVar("Found")
-
-
-def _pressed_on_larger_elements(press: Callable[[float], Found]) -> dict[float, Found]:
-    """Ratio of sizes -> result of press there; only that of the first one must succeed. Raises any of PRESS_ERRORS."""
-    found = {SIZE_RATIOS[0]: press(SIZE_RATIOS[0])}
-    for ratio in SIZE_RATIOS[1:]:
+        note = MISSING_NOTES["slide" if config.press.path_xy_mm else "path"]
+        larger = {first: answers_on_larger_elements(config, first)}
+    else:
+        rows = [row for row in material_tolerances(config) if row.counted]
+        load = full_load(config, first, sorted({key for row in rows for key in row.slopes}))
+        parts = sorted((_material_part(row, load) for row in rows), key=lambda part: -part[2][1])
+        larger = {first: answers_at_full_load(load)}
+    for ratio in further:
         with suppress(*PRESS_ERRORS):
-            found[ratio] = press(ratio)
-    return found
+            larger[ratio] = answers_on_larger_elements(config, ratio)
+    return parts, larger, note
+
+
+def _material_part(row: Tolerance, load: PressAnswer) -> Part:
+    """The part of one constant of a material, at the end of its tolerance."""
+    percent = 100.0 * np.abs(row.effect(load.slopes) / np.array(load.nominal))
+    return f"{row.label} ±{row.plus_minus:.3g} {row.unit}", row.source, percent
 
 
 def fill_cache(config: Config) -> None:
     """Calculate what uncertainty needs besides the press, and leave it in the cache; it may run beside the press."""
     with suppress(*PRESS_ERRORS):
-        _estimate_parts(config, given=False)
-
-
-def _without_given_force(percent: tuple[float, float], given: bool) -> tuple[float, float]:
-    """Percentages of force and voltage, with zero for a force that is given."""
-    return (0.0 if given else percent[0], percent[1])
-
-
-def _root_sum_square(parts: Sequence[Mapping[str, Any]]) -> dict[str, float]:
-    """The root of the sum of the squares of all parts, in percent of force and of voltage."""
-    return {name: hypot(*(part[name] for part in parts)) for name in ("force_percent", "voltage_percent")}
-
-
-def _material_part(row: Tolerance, answer: PressAnswer, given: bool) -> dict[str, Any]:
-    """The part of one constant of a material, at the end of its tolerance."""
-    force, voltage = 100.0 * np.abs(row.effect(answer.slopes) / np.array(answer.nominal))
-    percent = _without_given_force((float(force), float(voltage)), given)
-    return _part_table(f"{row.label} ±{row.plus_minus:.3g} {row.unit}", row.source, percent)
-
-
-def _part_table(name: str, source: str, percent: tuple[float, float]) -> dict[str, Any]:
-    """One part of the uncertainty as summary.json holds it."""
-    return {"name": name, "source": source, "force_percent": percent[0], "voltage_percent": percent[1]}
+        _estimate_parts(config)
