@@ -73,12 +73,19 @@ def _dot_arrays(dot: DotShape) -> tuple[Any, Any, Any]:
 
 
 def cached_mesh(name: str, make: Callable[[], LinearMesh]) -> LinearMesh:
-    """The mesh kept under this name, or that which make returns, which is then kept. A damaged file is made again."""
+    """The mesh kept under this name, or that which make returns, which is then kept. A damaged file is made again.
+
+    Where another process has kept one meanwhile, that one: a mesher may make another mesh at each call, and presses
+    that are compared need the same.
+    """
     path = cache_folder() / f"mesh-{name}.npz"
     found = read_arrays(path, _decode_mesh)
     if found is not None:
         return found
     made = make()
+    found = read_arrays(path, _decode_mesh)
+    if found is not None:
+        return found
     names = np.array(made.region_names)
     arrays = {"points": made.points_mm, "tets": made.tets, "region": made.region, "names": names}
     with suppress(OSError):  # a cache that cannot be written is no cache

@@ -33,6 +33,19 @@ def test_a_mesh_is_made_once(store: Path) -> None:
     assert [p.name for p in store.iterdir()] == ["mesh-abc.npz"]
 
 
+@pytest.mark.usefixtures("store")
+def test_of_two_that_mesh_at_once_both_go_on_with_the_first() -> None:
+    """A mesher may make another mesh at each call, and two presses on two meshes would differ by more than a slope."""
+    other = LinearMesh(2.0 * ONE.points_mm, ONE.tets, ONE.region, ONE.region_names)
+
+    def slower() -> LinearMesh:
+        cached_mesh("abc", lambda: ONE)
+        return other
+
+    np.testing.assert_array_equal(cached_mesh("abc", slower).points_mm, ONE.points_mm)
+    np.testing.assert_array_equal(cached_mesh("abc", never).points_mm, ONE.points_mm)
+
+
 @for_each("damage", [b"", b"not a mesh", None])
 def test_a_damaged_file_is_a_miss_and_is_replaced(store: Path, damage: bytes | None) -> None:
     cached_mesh("abc", lambda: ONE)
