@@ -13,6 +13,7 @@ from softdot.reading.line_filter.evidence import (
     take_heights,
 )
 from softdot.reading.line_filter.hypothesis_arrays import (
+    AHEAD,
     BACK,
     COLUMNS,
     FORTH,
@@ -46,12 +47,12 @@ OLD_MM = 1.8
 
 
 @nb.njit(cache=True)
-def advance(state, choice, memory, measured, temper, may_touch, turn, open_bits, sensor, settings, room):  # type: ignore[no-untyped-def]
+def advance(state, choice, memory, measured, temper, may_touch, turn, told, sensor, settings, room):  # type: ignore[no-untyped-def]
     """The hypotheses after a step with the charges measured (n,), and the logarithm of their evidence.
 
     temper : exponent of the likelihood. may_touch : whether lost contact may be found again. turn : of what is rare.
-    open_bits : mask of the columns that are not given out yet.
-    room : four arrays for children, state (m, 4), choice (m, 5), number of the parent (m,) and bits of new columns
+    told : what was given out (softdot.reading.line_filter.merging).
+    room : four arrays for children, state (m, 4), choice (m, 6), number of the parent (m,) and bits of new columns
     and of a step aside.
     """
     made, made_choice, parent, fresh = room
@@ -74,7 +75,7 @@ def advance(state, choice, memory, measured, temper, may_touch, turn, open_bits,
             )  # fmt: skip
             for child in range(begin, count):
                 parent[child] = h
-    agreed = merged(made, made_choice, memory, parent, fresh, count, top, open_bits, sensor.silent_mm)
+    agreed = merged(made, made_choice, memory, parent, fresh, count, top, told, sensor)
     before = state[:, PLACE]
     agreed = agreed[_best_ones(made[agreed, LOG_WEIGHT], settings.kept_log, settings.most_weighed)]
     weight, learned = _weigh(
@@ -224,6 +225,7 @@ def _children(state, choice, h, options, touch, way, one, made, made_choice, fre
             made[count, LOG_WEIGHT] = chance
             made_choice[count, WAY], made_choice[count, YAW] = way, yaw
             made_choice[count, TOUCH], made_choice[count, SEEN], made_choice[count, COLUMNS] = touch, seen, own
+            made_choice[count, AHEAD] = choice[h, AHEAD]
             fresh[count] = int(option[ASIDE]) | (REAR if rears == 8 else 0) | (FRONT if fronts == 8 else 0)
             count += 1
     return count

@@ -11,6 +11,7 @@ from softdot.reading.cells import KINDS_OF_CELL
 from softdot.reading.line_filter.beam import RARE_STEPS
 from softdot.reading.line_filter.givens import HandMotion
 from softdot.reading.line_filter.hypothesis_arrays import (
+    AHEAD,
     COLUMNS,
     FORTH,
     HEIGHT,
@@ -68,7 +69,7 @@ Asides = list[tuple[Floats, float]]
 
 @dataclass
 class Beam:
-    """Rows of state (h, 4), choice (h, 5) and memory (h, 33 + 4 n) (hypothesis_arrays)."""
+    """Rows of state (h, 4), choice (h, 6) and memory (h, 33 + 4 n) (hypothesis_arrays)."""
 
     state: Floats
     choice: Ints
@@ -147,7 +148,7 @@ def at_the_first_column(table: LineTable, speed_mm_per_s: float, channels: int) 
     chance = first[column] + np.array([log_prior for _, log_prior in asides])[aside] + turned[yaw]
     state = np.stack([places[column] - entries[entry], speeds[speed], speeds[speed], chance], axis=1)
     ones = np.ones_like(column)
-    choice = np.stack([FORTH * ones, yaws[yaw], ones, column + 1, pattern + 1], axis=1)
+    choice = np.stack([FORTH * ones, yaws[yaw], ones, column + 1, pattern + 1, 0 * ones], axis=1)
     return Beam(state, choice, _memory(np.array([own for own, _ in asides])[aside], _channels(channels)))
 
 
@@ -194,7 +195,7 @@ def _speeds(speed_mm_per_s: float) -> Floats:
 def inside(table: LineTable, speed_mm_per_s: float, channels: int) -> Beam:
     """The array is on a line already when it begins to be heard: in the first cell, with any two columns."""
     yaw = len(YAWS_DEG) // 2
-    nowhere = np.array([FORTH, yaw, 1, 0, 0])
+    nowhere = np.array([FORTH, yaw, 1, 0, 0, 0])
     speeds = np.log(speed_mm_per_s) + np.linspace(-1.0, 1.0, 9)
     return _anywhere(table, 0.5 * table.cell_pitch_mm, nowhere, speeds, _lateral_places(), _channels(channels))
 
@@ -216,7 +217,7 @@ def _anywhere(
     asides: Asides,
     channels: Floats,
 ) -> Beam:
-    """Hypotheses within half a cell of a place, with what a choice (5,) knows of the columns before, and its yaw."""
+    """Hypotheses within half a cell of a place, with what a choice (6,) knows of the columns before, and its yaw."""
     half = 0.5 * table.cell_pitch_mm
     places = middle_mm + np.arange(-half, half, 0.15)
     before = np.array([_with_unseen(known, _last_in_window(table, float(place))) for place in places], dtype=np.int64)
@@ -225,7 +226,7 @@ def _anywhere(
     state = np.stack([places[place], speeds[speed], speeds[speed], chance], axis=1)
     columns = before[place, 0] & ~0xFF | pattern >> 3 | (pattern & 7) << 4
     ones = np.ones_like(place)
-    choice = np.stack([FORTH * ones, known[YAW] * ones, ones, before[place, 1], columns], axis=1)
+    choice = np.stack([FORTH * ones, known[YAW] * ones, ones, before[place, 1], columns, known[AHEAD] * ones], axis=1)
     return Beam(state, choice, _memory(np.array([own for own, _ in asides])[aside], channels))
 
 

@@ -1,9 +1,10 @@
 """What the numbers of the hypotheses on a line mean, which lie in rows of three arrays.
 
-state (h, 4) and choice (h, 5) by the names below, and memory (h, 33 + 4 n): heights of the dots of the last four
+state (h, 4) and choice (h, 6) by the names below, and memory (h, 33 + 4 n): heights of the dots of the last four
 columns as shares of a nominal charge, the variances of these, means and covariances of the lateral place, and of each
 channel level and rate of the drift, gain and its variance. Columns of dots that were seen are kept sixteen at a time,
-four bits each, the last one lowest; 8 stands for a column that passed without contact.
+four bits each, the last one lowest; 8 stands for a column that passed without contact. What each hypothesis numbers as
+cell k is given out as cell k + AHEAD.
 """
 
 import numba as nb
@@ -11,7 +12,7 @@ import numba as nb
 from solve.compiled import piece
 
 PLACE, LOG_SPEED, MEAN_LOG_SPEED, LOG_WEIGHT = range(4)
-WAY, YAW, TOUCH, SEEN, COLUMNS = range(5)
+WAY, YAW, TOUCH, SEEN, COLUMNS, AHEAD = range(6)
 UNSEEN, KEPT_COLUMNS = 8, 16
 ROWS, KEPT_HEIGHTS = 3, 4
 HEIGHT, SPREAD, LATERAL = 0, ROWS * KEPT_HEIGHTS, 2 * ROWS * KEPT_HEIGHTS

@@ -12,6 +12,7 @@ from softdot.reading.line_filter.evidence import predicted_charges
 from softdot.reading.line_filter.givens import Sensor
 from softdot.reading.line_filter.hypotheses import Beam, around, early_settings, settings
 from softdot.reading.line_filter.hypothesis_arrays import (
+    AHEAD,
     COLUMNS,
     HEIGHT,
     KEPT_COLUMNS,
@@ -106,7 +107,7 @@ class LineFilter:
         self._early = early_settings(self.step_s, self.table.is_mirrored)
         self._steps, self._is_early = 0, True
         self._room = (
-            np.empty((MOST_CHILDREN, 4)), np.empty((MOST_CHILDREN, 5), dtype=np.int64),
+            np.empty((MOST_CHILDREN, 4)), np.empty((MOST_CHILDREN, 6), dtype=np.int64),
             np.empty(MOST_CHILDREN, dtype=np.int64), np.empty(MOST_CHILDREN, dtype=np.int64),
         )  # fmt: skip
         self._best = 0
@@ -125,12 +126,14 @@ class LineFilter:
     @property
     def place_mm(self) -> float:
         """Place of the array's middle from the first column of the first cell."""
-        return float(self.hypotheses.state[self._best, PLACE])
+        best, known = self._best, self.hypotheses
+        return float(known.state[best, PLACE]) + self.table.cell_pitch_mm * int(known.choice[best, AHEAD])
 
     @property
     def columns_seen(self) -> int:
         """Number of columns that the most likely hypothesis has seen."""
-        return int(self.hypotheses.choice[self._best, SEEN])
+        best = self.hypotheses.choice[self._best]
+        return int(best[SEEN] + 2 * best[AHEAD])
 
     @property
     def speed_mm_per_s(self) -> float:
@@ -166,7 +169,7 @@ class LineFilter:
         largest = np.abs(charge_pC - self._level(known.memory[self._best])).max()
         state, choice, memory, evidence = advance(
             known.state, known.choice, known.memory, charge_pC, temper,
-            bool(largest > TOUCH_SHARE * self.table.largest_pC), self._steps % RARE_STEPS, self._open_bits, self.sensor,
+            bool(largest > TOUCH_SHARE * self.table.largest_pC), self._steps % RARE_STEPS, self._told, self.sensor,
             self._early if self._is_early else self._settings, self._room,
         )  # fmt: skip
         self._steps += 1
@@ -181,10 +184,10 @@ class LineFilter:
         self._look_for_the_track(charge_pC)
 
     @property
-    def _open_bits(self) -> int:
-        """Mask of the columns that are not given out yet, and of those in the window."""
+    def _told(self) -> tuple[int, int]:
+        """Mask of the columns that are not given out yet, and of those in the window; number of the cell here."""
         count = min(max(self.columns_seen - 2 * self.emitted, LAG_COLUMNS), KEPT_COLUMNS - 1)
-        return (1 << 4 * count) - 1
+        return (1 << 4 * count) - 1, int(self.place_mm // self.table.cell_pitch_mm)
 
     @property
     def gain(self) -> Floats:
@@ -200,7 +203,7 @@ class LineFilter:
         """Follow mean and spread of the heights of this line's dots, by the column that left the window."""
         if self.columns_seen <= max(seen, 2) or self.fit > FOUND_FIT:
             return
-        number = self.columns_seen - 3
+        number = int(self.best.choice[0, SEEN]) - 3
         pattern = int(_column(self.best.choice[:, COLUMNS], self.best.choice[:, SEEN], number)[0])
         rows = [row for row in range(ROWS) if 0 < pattern < UNSEEN and pattern >> row & 1]
         for slot in (ROWS * (number % KEPT_HEIGHTS) + row for row in rows):
@@ -295,7 +298,8 @@ class LineFilter:
         """The marginal of a cell over all hypotheses."""
         weight = np.exp(self.hypotheses.state[:, LOG_WEIGHT] - self.hypotheses.state[:, LOG_WEIGHT].max())
         weight /= weight.sum()
-        columns, seen = self.hypotheses.choice[:, COLUMNS], self.hypotheses.choice[:, SEEN]
+        choice = self.hypotheses.choice
+        columns, seen = choice[:, COLUMNS], choice[:, SEEN] + 2 * choice[:, AHEAD]
         first, second = (_column(columns, seen, 2 * number + k) for k in (0, 1))
         known = (first < UNSEEN) & (second < UNSEEN) & (first >= 0) & (second >= 0)
         share = np.bincount(np.where(known, (first & 7) | (second & 7) << 3, 64), weight, 1 << DOTS | 1)

@@ -7,7 +7,8 @@ import pytest
 from geometry.braille_standards import standard
 from softdot.reading.cells import cells_of
 from softdot.reading.decoders.hand import track_hand
-from softdot.reading.line_filter.hypothesis_arrays import LATERAL, LOG_WEIGHT
+from softdot.reading.line_filter.givens import Sensor
+from softdot.reading.line_filter.hypothesis_arrays import AHEAD, COLUMNS, LATERAL, LOG_WEIGHT, PLACE, SEEN
 from softdot.reading.line_filter.lateral import (
     LEFT,
     LINE_MM,
@@ -27,6 +28,7 @@ from tests.cases import for_each
 from tests.softdot.reading.lines import simulated
 
 OF_PLACE = np.array([1.0, 0.0, 1.0])
+SENSOR = Sensor(*3 * [np.zeros(1)], 2.5, 6.0, *4 * [np.zeros(1)], 1.6)
 
 
 @nb.njit
@@ -85,11 +87,30 @@ def test_dots_of_a_row_that_is_not_felt_are_not_told_apart(aside, step, kept):
     made, memory = np.zeros((2, 4)), np.zeros((1, LATERAL + 9 + 4))
     made[:, LOG_WEIGHT] = np.log([0.75, 0.25])
     memory[0, LATERAL] = aside
-    choice = np.array([[1, 4, 1, 2, 0b0011], [1, 4, 1, 2, 0b0010]])
+    choice = np.array([[1, 4, 1, 2, 0b0011, 0], [1, 4, 1, 2, 0b0010, 0]])
     fresh = np.array([0, step])
-    numbers = merged(made, choice, memory, np.zeros(2, dtype=np.int64), fresh, 2, 0.0, (1 << 16) - 1, 1.6)
+    numbers = merged(made, choice, memory, np.zeros(2, dtype=np.int64), fresh, 2, 0.0, ((1 << 16) - 1, 0), SENSOR)
     assert len(numbers) == kept
     assert made[numbers[0], LOG_WEIGHT] == pytest.approx(0.0 if kept == 1 else np.log(0.75))
+
+
+@pytest.mark.press
+@for_each(("columns", "kept"), [(0x12345, 1), (0x12315, 2)])
+def test_a_cell_more_before_what_was_given_out_makes_no_other_hypothesis(columns, kept):
+    """The likelier one has seen a cell more, but the last four columns are the same: it is numbered as the other."""
+    made, memory = np.zeros((2, 4)), np.zeros((1, LATERAL + 9 + 4))
+    made[:, LOG_WEIGHT], made[:, PLACE] = np.log([0.25, 0.75]), [31.0, 37.02]
+    choice = np.zeros((2, 6), dtype=np.int64)
+    choice[:, SEEN], choice[:, COLUMNS] = [12, 14], [columns, 0x72345]
+    numbers = merged(
+        made, choice, memory, np.zeros(2, dtype=np.int64), np.zeros(2, dtype=np.int64), 2, 0.0, (0xFFFF, 5), SENSOR
+    )
+    assert len(numbers) == kept
+    if kept == 1:
+        assert list(numbers) == [1]
+        assert made[1, LOG_WEIGHT] == pytest.approx(0.0)
+        assert made[1, PLACE] == pytest.approx(37.0 + 0.75 * 0.02)
+        assert choice[1, AHEAD] == -1
 
 
 def test_the_reach_is_where_a_row_is_not_felt_any_more(kernel):
