@@ -14,6 +14,7 @@ from softdot.reading.line_filter.charge import ChargeBlocks
 from softdot.reading.line_filter.givens import Sensor
 from softdot.reading.line_filter.hypotheses import at_the_first_column, inside
 from softdot.reading.line_filter.line_filter import FLOOR_SHARE, LOST_FIT, LineFilter, PassedCell
+from softdot.reading.line_filter.line_filter import FIRST_COLUMNS
 from softdot.reading.line_filter.mains import BANDWIDTH_HZ, FREQUENCY, hum_frequency_Hz, hum_state, without_hum
 from softdot.reading.line_filter.table import LineTable, line_table
 from solve.model import Readout
@@ -196,6 +197,7 @@ class LineReader:
             self._zero = before[max(0, self._skip - 5) : self._skip + 1].mean(axis=0)
         self._line_begin_s = self._begin_s + self._skip * samples / self._rate
         self._done = 0
+        self._first: list[Floats] | None = []
         self._last = self._zero * 0.0
         self._filters = [self._filter(table, channels, samples / self._rate) for table in self._tables]
 
@@ -242,6 +244,8 @@ class LineReader:
         """One step of all filters with the charges (n,) of a block."""
         step_s = self._blocks.samples / self._rate
         time_s = self._begin_s + (self._done + 0.5) * step_s
+        if self._first is not None:
+            self._first.append(charge_pC)
         better = self._better
         change = np.abs(charge_pC - self._last)[better.sensor.alive].max() / better.table.largest_pC * 1.5
         self._last = charge_pC
@@ -254,6 +258,18 @@ class LineReader:
             self.course.append((time_s, better.place_mm - 0.5 * better.table.dot_pitch_mm))
         if len(self._filters) > 1:
             self._choose_direction()
+        if self._first is not None and self._better.columns_seen >= FIRST_COLUMNS:
+            again, self._first, late = self._first, None, self._done
+            start = at_the_first_column(better.table, self._channels.speed_mm_per_s, len(self._used))
+            self._filters = [self._better.begun_anew(start)]
+            self._last = self._zero * 0.0
+            if self.course is not None:
+                self.course = self.course[: -len(again)]
+            self._done -= len(again) - 1
+            for one in again:
+                self._take(one)
+                self._done += 1
+            self._done = late
 
     def _choose_direction(self) -> None:
         """Keep the better direction alone as soon as it is clear."""
