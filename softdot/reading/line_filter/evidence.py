@@ -166,10 +166,12 @@ def remember(state, choice, memory, chosen, learned, temper, sensor, settings): 
             width = np.sqrt((sensor.floor_pC2[j] + (settings.rough * charge) ** 2) / temper)
             residual = min(max(channel[0, j] - charge, -LARGEST_RESIDUAL * width), LARGEST_RESIDUAL * width)
             memory[h, LEVEL + 2 * channels + j], memory[h, LEVEL + 3 * channels + j] = channel[1, j], channel[2, j]
-            bend = sensor.bend_pC[j] / (width + sensor.bend_pC[j])
-            level = min(1.0, np.sqrt(2.0 * bend + sensor.drift_pC[j] ** 2 / (sensor.drift_pC[j] ** 2 + width**2)))
-            memory[h, LEVEL + j] += settings.step_s * memory[h, LEVEL + channels + j] + level * residual
-            memory[h, LEVEL + channels + j] += bend * residual / settings.step_s
+            bend = (sensor.bend_pC[j] / (width + sensor.bend_pC[j])) ** (1.0 / 3.0)
+            level = min(1.0, np.sqrt(4.0 * bend**2 + sensor.drift_pC[j] ** 2 / (sensor.drift_pC[j] ** 2 + width**2)))
+            rate, step = LEVEL + channels + j, settings.step_s
+            memory[h, LEVEL + j] += step * memory[h, rate] + level * residual
+            memory[h, rate] += step * memory[h, LEVEL + 4 * channels + j] + 2.0 * bend**2 * residual / step
+            memory[h, LEVEL + 4 * channels + j] += bend**3 * residual / step**2
 
 
 @nb.njit(cache=True)

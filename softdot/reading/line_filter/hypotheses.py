@@ -177,7 +177,7 @@ def _places_beside(aside: Floats, row_mm: float) -> Asides:
 
 def _channels(count: int) -> Floats:
     """Level and rate of the drift, gain and its variance (4 n,) of channels of which nothing is known."""
-    return np.concatenate([np.zeros(2 * count), np.ones(count), np.full(count, GAIN_SPREAD**2)])
+    return np.concatenate([np.zeros(2 * count), np.ones(count), np.full(count, GAIN_SPREAD**2), np.zeros(count)])
 
 
 def _memory(asides: Floats, channels: Floats) -> Floats:

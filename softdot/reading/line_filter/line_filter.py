@@ -125,7 +125,7 @@ class LineFilter:
         count = self.table.lone.shape[-1]
         own = self.best.memory[0, LEVEL:]
         spread[:, LEVEL + 2 * count : LEVEL + 3 * count] = own[2 * count : 3 * count]
-        spread[:, LEVEL + 3 * count :] = np.maximum(own[3 * count :], AGAIN_GAIN_SPREAD**2)
+        spread[:, LEVEL + 3 * count : LEVEL + 4 * count] = np.maximum(own[3 * count : 4 * count], AGAIN_GAIN_SPREAD**2)
         fresh = LineFilter(self.table, self.sensor, self.step_s, hypotheses)
         fresh._settings = fresh._settings._replace(height=known.height, height_spread=known.height_spread)
         fresh._early = fresh._early._replace(height=known.height, height_spread=known.height_spread)

@@ -32,7 +32,7 @@ DIRECTION_EVIDENCE, DIRECTION_COLUMNS = 25.0, 6
 """Logarithm of the evidence that decides the direction, or columns after which the better one is taken."""
 DRIFT_SHARE = 7e-4
 """Least standard deviation of the drift in a step, over the largest charge of one dot."""
-SLOPE_V_PER_S, SLOPES = 3e-4, 2.0
+SLOPE_V_PER_S, SLOPES, DRIFT_S = 3e-4, 2.0, 10.0
 """By how much a resting voltage is taken to change in a second, at least and over what the first seconds say."""
 LOST_PROBABILITY, UNFELT_PROBABILITY = 0.5, 0.85
 """Of a cell at most where the fit was bad, and where no segment felt one of its rows of dots."""
@@ -212,7 +212,7 @@ class LineReader:
         walk = 1e12 * channels.noise_V * np.sqrt(step_s / self._rate) / np.abs(self._circuit[1]) / gain
         drift = np.hypot(walk, DRIFT_SHARE * table.largest_pC)
         slope = max(SLOPES * channels.slope_V_per_s, SLOPE_V_PER_S)
-        bend = 1e12 * slope * step_s**2 / np.abs(self._circuit[1]) / gain
+        bend = 1e12 * slope * step_s**2 * np.sqrt(2.0 * step_s / DRIFT_S) / np.abs(self._circuit[1]) / gain
         noise = 1e12 * np.abs(self._circuit[0]) * channels.noise_V / gain
         floor = (FLOOR_SHARE * table.largest_pC) ** 2 + noise**2
         sensor = Sensor(
