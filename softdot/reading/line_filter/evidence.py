@@ -141,7 +141,10 @@ def pattern_of(place, choice, h, sensor):  # type: ignore[no-untyped-def]
 
 @nb.njit(cache=True)
 def remember(state, choice, memory, chosen, learned, temper, sensor, settings):  # type: ignore[no-untyped-def]
-    """Move the memories (h, 33 + 4 n) on: heights, lateral place, gains, and the drift by a steady filter.
+    """Move the memories (h, 33 + 5 n) on: heights, lateral place, gains, and the drift by a steady filter.
+
+    The rate of the drift has a bend of its own, so that under a steadily drifting resting voltage no lag is left to gains
+    and dots. Steady Kalman's gains of an integral of white noise of order three: Butterworth's poles of that order.
 
     chosen (h,) : which of what the charges taught the hypotheses belongs to each (softdot.reading.line_filter.beam).
     """

@@ -9,8 +9,9 @@ class Sensor(NamedTuple):
     """What the charges are compared with: charges of single dots, what dots beside each other add, pitches, and floor
     of the variance and drift of each channel (n,).
 
-    drift_pC, bend_pC : standard deviations in a step of the walk of the drift, and of its way per step. silent_mm :
-    distance of the array's middle from the middle row beyond which nothing tells whether the far row has dots.
+    drift_pC, bend_pC : standard deviations in a step of the walk of the drift, and of the change of the bend
+    of its course. silent_mm : distance of the array's middle from the middle row beyond which nothing tells whether the
+    far row has dots.
     """
 
     lone: Floats

@@ -69,7 +69,7 @@ Asides = list[tuple[Floats, float]]
 
 @dataclass
 class Beam:
-    """Rows of state (h, 4), choice (h, 6) and memory (h, 33 + 4 n) (hypothesis_arrays)."""
+    """Rows of state (h, 4), choice (h, 6) and memory (h, 33 + 5 n) (hypothesis_arrays)."""
 
     state: Floats
     choice: Ints
@@ -176,12 +176,12 @@ def _places_beside(aside: Floats, row_mm: float) -> Asides:
 
 
 def _channels(count: int) -> Floats:
-    """Level and rate of the drift, gain and its variance (4 n,) of channels of which nothing is known."""
+    """Level and rate of the drift, gain, its variance, and bend of the drift (5 n,) of channels not yet known."""
     return np.concatenate([np.zeros(2 * count), np.ones(count), np.full(count, GAIN_SPREAD**2), np.zeros(count)])
 
 
 def _memory(asides: Floats, channels: Floats) -> Floats:
-    """Memories (h, 33 + 4 n) that know of no dot, with lateral places (h, 9) and what is known of channels (4 n,)."""
+    """Memories (h, 33 + 5 n) that know of no dot, with lateral places (h, 9) and what is known of channels (5 n,)."""
     known = np.empty((len(asides), LEVEL + len(channels)))
     known[:, HEIGHT:SPREAD], known[:, SPREAD:LATERAL] = HEIGHT_MEAN, HEIGHT_SPREAD**2
     known[:, LATERAL:LEVEL], known[:, LEVEL:] = asides, channels

@@ -1,10 +1,10 @@
 """What the numbers of the hypotheses on a line mean, which lie in rows of three arrays.
 
-state (h, 4) and choice (h, 6) by the names below, and memory (h, 33 + 4 n): heights of the dots of the last four
+state (h, 4) and choice (h, 6) by the names below, and memory (h, 33 + 5 n): heights of the dots of the last four
 columns as shares of a nominal charge, the variances of these, means and covariances of the lateral place, and of each
-channel level and rate of the drift, gain and its variance. Columns of dots that were seen are kept sixteen at a time,
-four bits each, the last one lowest; 8 stands for a column that passed without contact. What each hypothesis numbers as
-cell k is given out as cell k + AHEAD.
+channel level and rate of the drift, gain and its variance, and change of that rate. Columns of dots that were seen are
+kept sixteen at a time, four bits each, the last one lowest; 8 stands for a column that passed without contact. What a
+hypothesis numbers as cell k is given out as cell k + AHEAD.
 """
 
 import numba as nb
@@ -17,7 +17,9 @@ UNSEEN, KEPT_COLUMNS = 8, 16
 ROWS, KEPT_HEIGHTS = 3, 4
 HEIGHT, SPREAD, LATERAL = 0, ROWS * KEPT_HEIGHTS, 2 * ROWS * KEPT_HEIGHTS
 LEVEL = LATERAL + 9
-"""Places in the memory; of the rate of the drift n behind its level, of the gain 2 n and of its variance 3 n."""
+"""Places in the memory; of the rate of the drift n behind its level, of the gain 2 n, of its variance 3 n and of the
+change of the rate 4 n.
+"""
 FORTH, STILL, BACK = 1, 0, -1
 
 

@@ -56,9 +56,10 @@ WIDTH_SPREAD, MOST_WIDER, WIDTH_MEMORY_MM, WIDTH_STEP = 0.05, 0.1, 100.0, 0.004
 """By how much a sensor may be wider than its kernel: standard deviation, assumed, and most; the way over which this is
 remembered, and the change from which charges are made anew.
 """
-AGAIN_GAIN_SPREAD = 0.1
 NEAR_MM = 3.0
 """Way from the middle of a cell within which the fit counts for it."""
+AGAIN_GAIN_SPREAD = 0.1
+"""Least standard deviation of a gain when the first cells, which told it, are read again."""
 
 
 @dataclass(frozen=True)
@@ -120,15 +121,15 @@ class LineFilter:
 
     def begun_anew(self, hypotheses: Beam) -> "LineFilter":
         """A filter that begins with hypotheses, and with what this one has learnt of the sensor and of the dots."""
-        known, spread = self._settings, hypotheses.memory
-        spread[:, HEIGHT:SPREAD], spread[:, SPREAD:LATERAL] = known.height, known.height_spread
-        count = self.table.lone.shape[-1]
-        own = self.best.memory[0, LEVEL:]
-        spread[:, LEVEL + 2 * count : LEVEL + 3 * count] = own[2 * count : 3 * count]
-        spread[:, LEVEL + 3 * count : LEVEL + 4 * count] = np.maximum(own[3 * count : 4 * count], AGAIN_GAIN_SPREAD**2)
+        learnt = {"height": self._settings.height, "height_spread": self._settings.height_spread}
+        memory, gains = hypotheses.memory, LEVEL + 2 * self.table.lone.shape[-1]
+        spreads = gains + self.table.lone.shape[-1]
+        bends = spreads + self.table.lone.shape[-1]
+        memory[:, HEIGHT:SPREAD], memory[:, SPREAD:LATERAL] = learnt["height"], learnt["height_spread"]
+        memory[:, gains:spreads] = self.gain
+        memory[:, spreads:bends] = np.maximum(self.best.memory[0, spreads:bends], AGAIN_GAIN_SPREAD**2)
         fresh = LineFilter(self.table, self.sensor, self.step_s, hypotheses)
-        fresh._settings = fresh._settings._replace(height=known.height, height_spread=known.height_spread)
-        fresh._early = fresh._early._replace(height=known.height, height_spread=known.height_spread)
+        fresh._settings, fresh._early = fresh._settings._replace(**learnt), fresh._early._replace(**learnt)
         fresh._heights = self._heights.copy()
         fresh._width, fresh._used_width, fresh._width_known = self._width, self._used_width, self._width_known
         return fresh
