@@ -143,8 +143,8 @@ def pattern_of(place, choice, h, sensor):  # type: ignore[no-untyped-def]
 def remember(state, choice, memory, chosen, learned, temper, sensor, settings):  # type: ignore[no-untyped-def]
     """Move the memories (h, 33 + 5 n) on: heights, lateral place, gains, and the drift by a steady filter.
 
-    The rate of the drift has a bend of its own, so that under a steadily drifting resting voltage no lag is left to gains
-    and dots. Steady Kalman's gains of an integral of white noise of order three: Butterworth's poles of that order.
+    The rate of the drift has a bend of its own: under a steadily drifting resting voltage no lag is left to gains and
+    dots. The gains are those of a steady Kalman filter of white noise integrated three times, with Butterworth's poles.
 
     chosen (h,) : which of what the charges taught the hypotheses belongs to each (softdot.reading.line_filter.beam).
     """
