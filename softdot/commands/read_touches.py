@@ -24,12 +24,15 @@ def run_learn(
     files: list[Path], out: Path, keep_rest: bool = False, progress: Progress | None = None
 ) -> dict[str, Any]:
     """Learn a kernel from labelled touches into the folder out and return what kernel.json says. InputError."""
+    from softdot.reading.learned_kernel.layout import layout_warnings
     from softdot.reading.learned_kernel.learning import learn_kernel
     from softdot.reading.learned_kernel.touches import join_touches, load_touches
 
-    touches = join_touches([load_touches(path) for path in files], [str(path) for path in files])
+    parts, names = [load_touches(path) for path in files], [str(path) for path in files]
+    touches = join_touches(parts, names)
     with staged_folder(out, LEARNED) as folder:
         kernel = learn_kernel(touches, keep_rest, progress or Logged())
+        kernel.about["warnings"] = [*layout_warnings(parts, names), *kernel.about["warnings"]]
         warn(kernel.about["warnings"])
         kernel.save(folder)
     return {"format": LEARNED.format, **kernel.about}

@@ -19,6 +19,8 @@ STILL, FOREIGN_SHARE, NOISE_RATIO = 0.25, 0.1, 5.0
 """Changes of a touch, over the noise at rest, below which the sensor is dead; share of touches unlike all learned ones,
 and factor of the noise at rest, from which on a recording is of another kind (assumed).
 """
+GAIN_RANGE, LEAST_OF_GAIN = (0.65, 1.5), 5
+"""Gains over that of the learned touches that are taken for the same sensor (assumed), and touches that tell one."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +63,8 @@ def answer_touches(kernel: LearnedKernel, touches: Touches, among: str) -> Touch
         together.append((int(number), len(rows), softmax(trust * own + barred)))
     still = weighed.std(axis=1).max(axis=1) < STILL
     unlike = still | (score.max(axis=1) < kernel.about["least_score"])
-    warnings = _foreign_signs(kernel, weighed, still, unlike)
+    gain = _gain(kernel, weighed[~still], score[~still])
+    warnings = _foreign_signs(kernel, weighed, still, unlike, gain)
     return TouchAnswers(
         probability=softmax(trust * score + barred, axis=1),
         log_score=score,
@@ -112,7 +115,7 @@ def _refuse_others(kernel: LearnedKernel, touches: Touches) -> None:
         )
 
 
-def _foreign_signs(kernel: LearnedKernel, weighed: Floats, still: Bools, unlike: Bools) -> list[str]:
+def _foreign_signs(kernel: LearnedKernel, weighed: Floats, still: Bools, unlike: Bools, gain: float) -> list[str]:
     """By what a recording with the heard channels weighed (n, t, c) is of another kind than the learned ones."""
     found = []
     learned = kernel.about["noise_at_rest"]
@@ -122,11 +125,29 @@ def _foreign_signs(kernel: LearnedKernel, weighed: Floats, still: Bools, unlike:
             f"the noise at rest is {noise / learned:.2g} of that of the learned touches: other units, or another gain; "
             "nothing is stated"
         )
+    if not GAIN_RANGE[0] <= gain <= GAIN_RANGE[1]:
+        found.append(
+            f"the touches are {gain:.2g} times as large as the learned ones of their cells, {GAIN_RANGE[0]:g} to "
+            f"{GAIN_RANGE[1]:g} is allowed: another gain, other units, or another sensor; nothing is stated"
+        )
     if unlike.mean() >= FOREIGN_SHARE:
         found.append(
             f"{100 * unlike.mean():.0f} % of the touches are of another kind than the learned ones: nothing is stated"
         )
     return found
+
+
+def _gain(kernel: LearnedKernel, weighed: Floats, score: Floats) -> float:
+    """Median of the factors by which touches (n, t, c) are larger than those of the cell of the best score (n, 64), by
+    least squares along the axes of the first view; 1 where too few touches tell it.
+    """
+    if len(weighed) < LEAST_OF_GAIN:
+        return 1.0
+    view = kernel.views[0]
+    rest = np.tensordot(view.centre * view.weight, view.axes, 2)
+    own = view.mean[score.argmax(axis=1), view.mean.shape[1] // 2] + rest
+    found = np.einsum("nd,nd->n", np.tensordot(weighed, view.axes, 2), own) / np.einsum("nd,nd->n", own, own)
+    return float(np.median(found))
 
 
 def _warnings(touches: Touches, kernel: LearnedKernel, weighed: Floats, still: int, unlike: int) -> list[str]:

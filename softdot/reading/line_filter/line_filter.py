@@ -121,15 +121,16 @@ class LineFilter:
 
     def begun_anew(self, hypotheses: Beam) -> "LineFilter":
         """A filter that begins with hypotheses, and with what this one has learnt of the sensor and of the dots."""
-        learnt = {"height": self._settings.height, "height_spread": self._settings.height_spread}
+        height, spread = self._settings.height, self._settings.height_spread
         memory, gains = hypotheses.memory, LEVEL + 2 * self.table.lone.shape[-1]
         spreads = gains + self.table.lone.shape[-1]
         bends = spreads + self.table.lone.shape[-1]
-        memory[:, HEIGHT:SPREAD], memory[:, SPREAD:LATERAL] = learnt["height"], learnt["height_spread"]
+        memory[:, HEIGHT:SPREAD], memory[:, SPREAD:LATERAL] = height, spread
         memory[:, gains:spreads] = self.gain
         memory[:, spreads:bends] = np.maximum(self.best.memory[0, spreads:bends], AGAIN_GAIN_SPREAD**2)
         fresh = LineFilter(self.table, self.sensor, self.step_s, hypotheses)
-        fresh._settings, fresh._early = fresh._settings._replace(**learnt), fresh._early._replace(**learnt)
+        fresh._settings = fresh._settings._replace(height=height, height_spread=spread)
+        fresh._early = fresh._early._replace(height=height, height_spread=spread)
         fresh._heights = self._heights.copy()
         fresh._width, fresh._used_width, fresh._width_known = self._width, self._used_width, self._width_known
         return fresh

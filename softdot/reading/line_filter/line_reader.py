@@ -31,7 +31,7 @@ DIRECTION_EVIDENCE, DIRECTION_COLUMNS = 25.0, 6
 """Logarithm of the evidence that decides the direction, or columns after which the better one is taken."""
 DRIFT_SHARE = 7e-4
 """Least standard deviation of the drift in a step, over the largest charge of one dot."""
-SLOPE_V_PER_S, SLOPES, DRIFT_S = 3e-4, 2.0, 10.0
+SLOPE_V_PER_S, SLOPES, DRIFT_S = 4e-5, 2.0, 10.0
 """By how much a resting voltage is taken to change in a second, at least and over what the first seconds say, and the
 time in which that changes, assumed.
 """

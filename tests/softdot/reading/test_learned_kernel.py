@@ -13,6 +13,7 @@ from softdot.cli import main
 from softdot.progress import Untold
 from softdot.reading.learned_kernel.answers import answer_touches
 from softdot.reading.learned_kernel.kernel_file import load_learned_kernel
+from softdot.reading.learned_kernel.layout import layout_warnings
 from softdot.reading.learned_kernel.learning import learn_kernel
 from softdot.reading.learned_kernel.superposition import PLACES, superposed_courses
 from softdot.reading.learned_kernel.touches import Touches, join_touches, letter_cells
@@ -198,10 +199,11 @@ def test_another_rate_is_read(kernel, usual):
         ),
         (lambda values: np.full_like(values, 7.0), "24 of 24 touches change less than the noise at rest"),
         (lambda values: 0.1 * values, "of that of the learned touches: other units"),
+        (lambda values: 0.5 * values, "times as large as the learned ones of their cells, 0.65 to 1.5 is allowed"),
         (lambda values: values[:, :, [1, 0, 2, 3, 5, 4]], "touches are of another kind than the learned ones"),
         (lambda values: values[:, ::-1], "touches are of another kind than the learned ones"),
     ],
-    ids=["noise", "dead", "other units", "exchanged channels", "backward"],
+    ids=["noise", "dead", "other units", "half the gain", "exchanged channels", "backward"],
 )
 def test_what_is_no_braille_of_this_sensor_is_never_a_cell(changed, says, folder, tmp_path, capfd):
     made = made_touches("abcdef", 4)
@@ -236,6 +238,16 @@ def test_touches_are_compared_over_the_place_where_it_was_measured():
         answer_touches(kernel, replace(asked, place_mm=None), "all")
     with pytest.raises(InputError, match="from 0 to 10 mm"):
         answer_touches(kernel, replace(asked, place_mm=asked.place_mm + 5.0), "all")
+
+
+def test_time_and_channels_exchanged_and_another_order_of_channels_are_told():
+    first, second = (touches_of(MET, 4, seed) for seed in (0, 1))
+    assert layout_warnings([first, second], ["one.npz", "two.npz"]) == []
+    turned = replace(first, taxels=first.taxels.swapaxes(1, 2))
+    assert "'one.npz': taxels (72, 6, 40) change" in layout_warnings([turned], ["one.npz"])[0]
+    mixed = replace(second, taxels=second.taxels[:, :, [0, 4, 2, 3, 1, 5]])
+    (told,) = layout_warnings([first, mixed], ["one.npz", "two.npz"])
+    assert "'two.npz': channels 2, 5 look like channels 5, 2 of 'one.npz'" in told
 
 
 def test_several_files_of_one_sensor_are_one():
