@@ -8,6 +8,9 @@ from softdot.reading.decoders.hand import HandTrack
 from softdot.reading.decoders.model import DecodedCells
 from softdot.reading.line_filter.line_reader import CERTAIN
 
+SCALES = (0.65, 1.5)
+"""Charges over those of the kernel that a sensor of its design, worn dots and a lighter touch explain (assumed)."""
+
 
 def line_content(track: HandTrack) -> dict[str, Any]:
     """What reading.json says of the line that a track was found on."""
@@ -51,6 +54,12 @@ def track_warnings(track: HandTrack, labels: list[str]) -> list[str]:
         told.append(
             f"path: at {report.beside} cells the array was more than {report.reach_mm:.1f} mm beside the line, where "
             "no segment feels one of its rows of dots; move it along the middle of the line"
+        )
+    scale = float(np.median(np.abs(report.gain)))
+    if not SCALES[0] <= scale <= SCALES[1]:
+        told.append(
+            f"gain: the charges are {scale:.2g} of the kernel's, {SCALES[0]:g} to {SCALES[1]:g} is usual; another gain "
+            "or array, or a touch of another depth: check the read-out, or calibrate by --calibrate"
         )
     turned = report.gain < 0.0
     if turned.all():

@@ -108,6 +108,17 @@ def test_a_constant_factor_changes_nothing():
     assert [cell.cell for cell in many] == [cell.cell for cell in one]
 
 
+@for_each(("factor", "told"), [(0.5, "gain: the charges are 0."), (1.0, None), (2.0, "gain: the charges are ")])
+def test_charges_that_are_far_from_those_of_the_kernel_are_told(factor, told):
+    """What is read is the same; half and twice the charges are of another gain, array or depth."""
+    reader, heard = line()
+    track = track_hand(reader, Voltages(heard.time_s, factor * heard.voltage_V))
+    assert text_of(track.cells) == TEXT
+    gains = [one for one in track_warnings(track, reader.kernel.about["labels"]) if one.startswith("gain: ")]
+    assert len(gains) == (told is not None)
+    assert all(one.startswith(told) for one in gains)
+
+
 @for_each("hum_mV", [0.0, 20.0])
 def test_silence_is_no_text(hum_mV):
     reader, heard = line()
