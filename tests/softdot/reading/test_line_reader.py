@@ -101,6 +101,13 @@ def test_what_was_found_of_the_line_is_told():
     assert humming.hum_Hz == pytest.approx(47.3, abs=0.05)
 
 
+def test_resting_voltages_that_drift_are_not_taken_for_gains():
+    """By 60 mV in some 10 s, each channel in its own way; all gains are 1."""
+    track = track_of(drift_mV=60.0, speed_mm_per_s=30.0)
+    assert text_of(track.cells) == TEXT
+    np.testing.assert_allclose(track.report.gain, 1.0, atol=0.35)
+
+
 def test_a_constant_factor_changes_nothing():
     """Charges are compared with those of the first seconds."""
     voltage = line()[1].voltage_V
