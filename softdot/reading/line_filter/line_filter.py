@@ -58,8 +58,6 @@ remembered, and the change from which charges are made anew.
 """
 NEAR_MM = 3.0
 """Way from the middle of a cell within which the fit counts for it."""
-AGAIN_GAIN_SPREAD = 0.1
-"""Least standard deviation of a gain when the first cells, which told it, are read again."""
 
 
 @dataclass(frozen=True)
@@ -118,22 +116,6 @@ class LineFilter:
         self._heights = self._prior_heights.copy()
         self._safe_channels = self.hypotheses.memory[0, LEVEL:]
         self._safe_log_speed = float(self.hypotheses.state[:, LOG_SPEED].mean())
-
-    def begun_anew(self, hypotheses: Beam) -> "LineFilter":
-        """A filter that begins with hypotheses, and with what this one has learnt of the sensor and of the dots."""
-        height, spread = self._settings.height, self._settings.height_spread
-        memory, gains = hypotheses.memory, LEVEL + 2 * self.table.lone.shape[-1]
-        spreads = gains + self.table.lone.shape[-1]
-        bends = spreads + self.table.lone.shape[-1]
-        memory[:, HEIGHT:SPREAD], memory[:, SPREAD:LATERAL] = height, spread
-        memory[:, gains:spreads] = self.gain
-        memory[:, spreads:bends] = np.maximum(self.best.memory[0, spreads:bends], AGAIN_GAIN_SPREAD**2)
-        fresh = LineFilter(self.table, self.sensor, self.step_s, hypotheses)
-        fresh._settings = fresh._settings._replace(height=height, height_spread=spread)
-        fresh._early = fresh._early._replace(height=height, height_spread=spread)
-        fresh._heights = self._heights.copy()
-        fresh._width, fresh._used_width, fresh._width_known = self._width, self._used_width, self._width_known
-        return fresh
 
     @property
     def best(self) -> Beam:

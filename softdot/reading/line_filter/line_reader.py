@@ -12,8 +12,8 @@ from softdot.reading.cells import KINDS_OF_CELL
 from softdot.reading.line_filter.channels import Channels, first_signal, measured_channels
 from softdot.reading.line_filter.charge import ChargeBlocks
 from softdot.reading.line_filter.givens import Sensor
-from softdot.reading.line_filter.hypotheses import Beam, at_the_first_column, inside
-from softdot.reading.line_filter.line_filter import FIRST_COLUMNS, FLOOR_SHARE, LOST_FIT, LineFilter, PassedCell
+from softdot.reading.line_filter.hypotheses import at_the_first_column, inside
+from softdot.reading.line_filter.line_filter import FLOOR_SHARE, LOST_FIT, LineFilter, PassedCell
 from softdot.reading.line_filter.mains import BANDWIDTH_HZ, FREQUENCY, hum_frequency_Hz, hum_state, without_hum
 from softdot.reading.line_filter.table import LineTable, line_table
 from solve.model import Readout
@@ -35,8 +35,6 @@ SLOPE_V_PER_S, SLOPES, DRIFT_S = 4e-5, 2.0, 10.0
 """By how much a resting voltage is taken to change in a second, at least and over what the first seconds say, and the
 time in which that changes, assumed.
 """
-MOST_FIRST = 4000
-"""Blocks of charges of the first cells that are kept to be read again; in a long pause they are not."""
 LOST_PROBABILITY, UNFELT_PROBABILITY = 0.5, 0.85
 """Of a cell at most where the fit was bad, and where no segment felt one of its rows of dots."""
 CERTAIN = 0.9
@@ -200,7 +198,6 @@ class LineReader:
             self._zero = before[max(0, self._skip - 5) : self._skip + 1].mean(axis=0)
         self._line_begin_s = self._begin_s + self._skip * samples / self._rate
         self._done = 0
-        self._first: list[Floats] | None = []
         self._last = self._zero * 0.0
         self._filters = [self._filter(table, channels, samples / self._rate) for table in self._tables]
 
@@ -221,13 +218,8 @@ class LineReader:
             table.lone, table.beside, table.within, table.dot_pitch_mm, table.cell_pitch_mm, channels.alive,
             floor, drift, bend, table.felt_mm(FLOOR_SHARE),
         )  # fmt: skip
-        return LineFilter(table, sensor, step_s, self._hypotheses(table))
-
-    def _hypotheses(self, table: LineTable) -> Beam:
-        """The hypotheses with which a line begins: with the first column, or anywhere on it."""
-        assert self._channels is not None
-        begin = inside if self._channels.is_inside else at_the_first_column
-        return begin(table, self._channels.speed_mm_per_s, len(self._used))
+        begin = inside if channels.is_inside else at_the_first_column
+        return LineFilter(table, sensor, step_s, begin(table, channels.speed_mm_per_s, len(self._used)))
 
     def _read_on(self, at_end: bool) -> list[ReadCell]:
         """Read all whole blocks that wait."""
@@ -250,7 +242,6 @@ class LineReader:
         """One step of all filters with the charges (n,) of a block."""
         step_s = self._blocks.samples / self._rate
         time_s = self._begin_s + (self._done + 0.5) * step_s
-        self._keep_first(charge_pC)
         better = self._better
         change = np.abs(charge_pC - self._last)[better.sensor.alive].max() / better.table.largest_pC * 1.5
         self._last = charge_pC
@@ -263,28 +254,6 @@ class LineReader:
             self.course.append((time_s, better.place_mm - 0.5 * better.table.dot_pitch_mm))
         if len(self._filters) > 1:
             self._choose_direction()
-        if self._first is not None and self._better.columns_seen >= FIRST_COLUMNS:
-            self._read_again()
-
-    def _keep_first(self, charge_pC: Floats) -> None:
-        """Keep the charges of the first cells, unless these last too long."""
-        if self._first is not None:
-            self._first.append(charge_pC)
-            if len(self._first) > MOST_FIRST:
-                self._first = None
-
-    def _read_again(self) -> None:
-        """Read the first cells once more, before any of them is given out, with what they taught of gains and dots."""
-        first, self._first = self._first or [], None
-        better = self._better
-        self._filters = [better.begun_anew(self._hypotheses(better.table))]
-        self._last = self._zero * 0.0
-        if self.course is not None:
-            self.course = self.course[: -len(first)]
-        self._done -= len(first)
-        for charge in first:
-            self._done += 1
-            self._take(charge)
 
     def _choose_direction(self) -> None:
         """Keep the better direction alone as soon as it is clear."""
