@@ -103,6 +103,7 @@ def test_a_press_is_cancelled_and_one_whose_process_is_killed_is_told(start_stud
     assert tab.text == SLOW_PRESS
     tab.write(QUICK)
     tab.pressed()
+    tab.page.close()  # it would ask whether the program is there while that is closing
     assert running.end() == 0
 
 
